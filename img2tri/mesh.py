@@ -1,0 +1,193 @@
+"""TriangleMesh, the one frozen value users hold: data, and one-line methods that call triangles/ and views/."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from img2tri.errors import MeshError, choice
+from img2tri.records import Floats, Frame, Ints, Origin
+from img2tri.triangles.checks import check_mesh, check_regions
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from pyvista import PolyData
+    from shapely import MultiPolygon, Polygon
+    from trimesh import Trimesh
+
+    from img2tri.report import Report
+    from img2tri.triangles.quality import Quality
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class TriangleMesh:
+    """A planar triangle mesh with regions.
+
+    Attributes
+    ----------
+    vertices
+        (n, 2) float64, world coordinates.
+    triangles
+        (m, 3) int64, counter-clockwise.
+    regions
+        (m,) int64, the image's own label of each triangle; 1 for one white zone.
+    frame
+        Where the image lies.
+    names
+        The user's names of regions.
+    origin
+        How the mesh was made and what it is to be judged by; None for meshes not made by `mesh_image`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> mesh = TriangleMesh(np.array([[0, 0], [1, 0], [0, 1.0]]), np.array([[0, 1, 2]]), np.array([1]))
+    >>> mesh
+    TriangleMesh: 1 triangle, 3 vertices, 1 region, 0 <= x <= 1, 0 <= y <= 1
+    """
+
+    vertices: Floats
+    triangles: Ints
+    regions: Ints
+    frame: Frame = field(default_factory=lambda: Frame((1, 1)))
+    names: Mapping[int, str] = field(default_factory=dict)
+    origin: Origin | None = None
+
+    def __post_init__(self) -> None:
+        vertices, triangles = check_mesh(self.vertices, self.triangles)
+        regions = check_regions(self.regions, triangles)
+        for name, array in (("vertices", vertices), ("triangles", triangles), ("regions", regions)):
+            view = array.view()
+            view.flags.writeable = False
+            object.__setattr__(self, name, view)
+
+    def __repr__(self) -> str:
+        (x0, y0), (x1, y1) = self.vertices.min(axis=0), self.vertices.max(axis=0)
+        counts = ((len(self.triangles), "triangle"), (len(self.vertices), "vertices"), (len(set(self.regions.tolist())), "region"))
+        text = ", ".join(f"{n} {word}{'s' if n != 1 and word != 'vertices' else ''}" for n, word in counts)
+        return f"TriangleMesh: {text}, {x0:g} <= x <= {x1:g}, {y0:g} <= y <= {y1:g}"
+
+    @cached_property
+    def report(self) -> Report:
+        """The certificate: what this mesh keeps of what was promised, measured on its triangles when first asked for."""
+        from img2tri.report import certify
+
+        if self.origin is None:
+            raise MeshError("report: expected a mesh made by mesh_image, found one made from arrays; there is no image to judge it by")
+        return certify(self.vertices, self.triangles, self.regions, self.frame, self.origin)
+
+    def quality(self) -> Quality:
+        """Measure the triangles: angles, areas, edge lengths, ratios, by their Verdict names, and q = 2 r / R."""
+        from img2tri.triangles.quality import assess
+
+        return assess(self.vertices, self.triangles)
+
+    def outlines(self) -> dict[int, Polygon | MultiPolygon]:
+        """Return the outlines of the image, as fine as the pixels, as one polygon for each label; together a coverage."""
+        from img2tri.shapes.polygons import region_polygons
+
+        if self.origin is None:
+            raise MeshError("outlines: expected a mesh made by mesh_image, found one made from arrays")
+        o = self.origin.outlines
+        return region_polygons(replace(o, points=self.frame.world(o.points)))
+
+    def smoothed(
+        self,
+        method: str = "cotangent",
+        *,
+        iterations: int = 10,
+        boundary: str = "fixed",
+        tolerance: float | str = "0.5px",
+        guard: bool = True,
+    ) -> TriangleMesh:
+        """Return the mesh with its vertices smoothed.
+
+        Parameters
+        ----------
+        method
+            "uniform": each vertex inside to the mean of its neighbours, as in the paper; evens lengths out, also those meant to
+            differ. "cotangent": leaves the inside of a flat mesh as it is, and with ``boundary="free"`` rounds the
+            boundary off.
+        iterations
+            Passes; more smooth further.
+        boundary
+            "fixed", or "free" (cotangent only): boundary and interfaces are rounded off, the inside follows harmonically.
+        tolerance
+            How far a vertex of the boundary may move, in world units, or "0.5px", or "2%" of the image diagonal.
+        guard
+            True: no triangle is turned over, and the worst angle does not fall. False: the paper's uniform smoothing.
+        """
+        from img2tri.triangles.smoothing import cotangent, uniform
+
+        choice("method", method, ("uniform", "cotangent"))
+        within = self.frame.length("tolerance", tolerance)
+        if method == "uniform":
+            choice("boundary", boundary, ("fixed",))
+            moved = uniform(self.vertices, self.triangles, iterations=iterations, regions=self.regions, guard=guard)
+        else:
+            bounds = self.frame.bounds if self.origin else None
+            moved = cotangent(
+                self.vertices, self.triangles, iterations=iterations, boundary=boundary, tolerance=within,
+                bounds=bounds, regions=self.regions, guard=guard,
+            )  # fmt: skip
+        return replace(self, vertices=moved)
+
+    def to_trimesh(self, height: float | None = None) -> Trimesh:
+        """Return a ``trimesh.Trimesh`` at z = 0, or with `height` (world units) the closed solid from z = 0 to z = height.
+
+        Face attributes: ``region`` and ``q``.
+        """
+        from img2tri.views.trimesh_objects import to_trimesh
+
+        return to_trimesh(self.vertices, self.triangles, self.regions, height=height, **self._data())
+
+    def to_pyvista(self, height: float | None = None) -> PolyData:
+        """Return a ``pyvista.PolyData`` at z = 0, or with `height` (world units) the closed solid from z = 0 to z = height.
+
+        Cell arrays: ``region`` and ``q``.
+        """
+        from img2tri.views.pyvista_objects import to_pyvista
+
+        return to_pyvista(self.vertices, self.triangles, self.regions, height=height, **self._data())
+
+    def save(self, path: str | os.PathLike[str], height: float | None = None) -> None:
+        """Write the mesh in the format the suffix names: .stl, .ply, .obj, .off, .3mf, .glb, .vtp or .vtu.
+
+        With `height` (world units), the closed solid from z = 0 to z = height. An older file is replaced in one step, or left as it
+        is if anything goes wrong.
+        """
+        from img2tri.views.files import save
+
+        save(path, self.vertices, self.triangles, self.regions, height=height, **self._data())
+
+    def plot(self, image: Any = None, path: str | os.PathLike[str] | None = None, *, colour_by: str | None = "quality") -> Figure:
+        """Draw the mesh over its image, with a histogram of its quality beside it.
+
+        Parameters
+        ----------
+        image
+            What was meshed: a path or an array; None draws the mesh alone.
+        path
+            Where to save the figure (.png, .svg, .pdf); None only returns it.
+        colour_by
+            "quality", "region", or None for red edges as in the paper's figures.
+        """
+        from img2tri.raster.reading import read
+        from img2tri.views.figure import draw
+
+        values = None if image is None else read(image).values
+        return draw(
+            self.vertices, self.triangles, regions=self.regions, values=self._data()["cell_data"]["q"], frame=self.frame,
+            image=values, colour_by=colour_by, path=path,
+        )  # fmt: skip
+
+    def _data(self) -> dict[str, Any]:
+        """What objects and files carry along: the height of the plane, q of each triangle, how the mesh was made."""
+        from img2tri.triangles.quality import measure
+
+        texts = {} if self.origin is None else {"img2tri": json.dumps({"recipe": self.origin.recipe, **self.origin.settings}, default=str)}
+        return {"z": self.frame.z, "cell_data": measure(self.vertices, self.triangles, ["q"]), "field_data": texts}

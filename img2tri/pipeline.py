@@ -1,0 +1,242 @@
+"""mesh_image: every stage in order. The table of contents of the library.
+
+    image -> labels -> outlines -> points -> triangles -> mesh
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, TypedDict, Unpack
+
+from img2tri.conforming import conform, trace_outlines
+from img2tri.errors import ImageError, ParameterError, choice, finite, integer
+from img2tri.mesh import TriangleMesh
+from img2tri.paper import paper_mesh
+from img2tri.raster.binarizing import Level
+from img2tri.raster.reading import read
+from img2tri.raster.zones import Zones, find_zones
+from img2tri.records import Floats, Frame, Origin, Outlines
+from img2tri.shapes.links import Links, pixel_areas, pixels_beside
+from img2tri.shapes.polygons import enclosed_areas
+
+RECIPES = ("conforming", "structured", "unstructured")
+SMOOTHINGS = ("none", "uniform", "cotangent")
+PAPER_THRESHOLD = 240
+PAPER_STEP = "10px"
+PAPER_SMOOTHING = {"structured": "none", "unstructured": "uniform"}
+USUAL_TRIANGLES = 2000  # what the default edge length aims at
+
+
+class PaperOptions(TypedDict, total=False):
+    """Options of the paper's recipes only, see `img2tri.paper`; all follow from `edge_length` if left out."""
+
+    step: float | str
+    n_boundary_points: int
+    n_interior_points: int
+    min_distance: float | str
+    min_distance_to_boundary: float | str
+
+
+def mesh_image(
+    image: Any,
+    *,
+    recipe: str = "conforming",
+    threshold: float | str | None = None,
+    labels: bool | Iterable[int] | None = None,
+    background: int | None = 0,
+    invert: bool = False,
+    connectivity: int = 4,
+    outline: str = "smooth",
+    corners: str = "auto",
+    edge_length: float | str | None = None,
+    min_angle: float = 30.0,
+    tolerance: float | str = "0.5px",
+    keep_area: bool = True,
+    smoothing: str | None = None,
+    iterations: int = 10,
+    spacing: float | Sequence[float] | str | None = None,
+    origin: str | Sequence[float] = "lower",
+    page: int = 0,
+    max_pixels: int = 2**28,
+    names: dict[int, str] | None = None,
+    seed: int = 0,
+    progress: Callable[[str, float], None] | None = None,
+    **paper: Unpack[PaperOptions],
+) -> TriangleMesh:
+    """Mesh an image: a path or an array in, a triangle mesh out.
+
+    Parameters
+    ----------
+    image
+        A path; an array (h, w) or (h, w, 3 or 4) of bool, integers or floats; or a planar ``pyvista.ImageData``, on which
+        the mesh then lies.
+    recipe
+        "conforming": every region with its own outline, holes and all, to the promises below. "structured" and
+        "unstructured" are the paper's, with what it gets wrong counted in the report.
+    threshold
+        A number on the image's own scale: strictly greater is foreground. "otsu". None: images of two values are split in
+        the middle, others by Otsu; in the paper's recipes 240.
+    labels
+        None: one white zone, region 1. True: each value of the image is a region of its own. A list: these values are.
+    background
+        The label that is not meshed; None: all are.
+    invert
+        Mesh the dark zone instead of the white one.
+    connectivity
+        4: pixels of the white zone hang together through their sides; 8: also through their corners.
+    outline
+        "smooth": through the places between the pixels where the edge is likely to be. "pixel": exactly along their sides.
+    corners
+        "auto": corners are kept sharp, as far as `min_angle` allows. "keep": always, even where that forces smaller
+        angles, which the report then lists. "round": they are smoothed as all else is.
+    edge_length
+        Wanted length of edges, in world units, or "8px", or "2%" of the image diagonal. None: such that some 2000 triangles
+        fill the image, at least 4 px. Smaller is finer and slower.
+    min_angle
+        Degrees, 0 to 33. The least angle of a triangle; above 30 more triangles are needed.
+    tolerance
+        The greatest distance between the outlines and the edges of the mesh, like `edge_length`. Larger lets sharp detail go.
+    keep_area
+        True: vertices on curved outlines are moved outwards so that the straight edges enclose the area the curve encloses,
+        which makes computations on the mesh several times as exact. False: they lie on the outline.
+    smoothing
+        "none"; "uniform", each vertex to the mean of its neighbours; "cotangent", rounding off what is left of the pixels
+        on boundary and interfaces within the tolerance, the interior following. None: what the recipe does, which is
+        "uniform" for "unstructured".
+    iterations
+        Passes of smoothing.
+    spacing
+        Size of a pixel in world units: a number, (dx, dy), or "file". None is 1.
+    origin
+        "lower": (0, 0) is the lower-left corner of the image, y points up. "upper": y points down from the upper-left
+        corner. (x, y): the place of the lower-left corner.
+    page, max_pixels
+        Which image of a file with several; the most pixels a file may have.
+    names
+        Names for regions, such as ``{1: "bone"}``.
+    seed
+        Of all that is random: the points inside, in the paper's unstructured recipe.
+    progress
+        Called with the name of a stage and the fraction done; what it raises ends the work.
+    **paper
+        Options of the paper's recipes: step, n_boundary_points, n_interior_points, min_distance, min_distance_to_boundary.
+
+    Returns
+    -------
+    TriangleMesh
+        Frozen; see its `report` for how it keeps the promises.
+
+    Raises
+    ------
+    FileError, ImageError, ParameterError
+        See `img2tri.errors`: the file, the image or an option is not as it must be.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> disc = np.hypot(*np.mgrid[-20:20, -20:20] + 0.5) < 15
+    >>> mesh = mesh_image(disc, edge_length=4)
+    >>> mesh.report.kept, mesh.quality().summary()["min_angle"]["min"] >= 30
+    (True, True)
+    """
+    tell = progress or _silent
+    choice("recipe", recipe, RECIPES)
+    choice("outline", outline, ("smooth", "pixel"))
+    choice("corners", corners, ("auto", "keep", "round"))
+    choice("smoothing", smoothing or "none", SMOOTHINGS)
+    integer("iterations", iterations)
+    integer("seed", seed)
+    finite("min_angle", min_angle, least=0, most=33)
+    if connectivity not in (4, 8):
+        raise ParameterError(f"connectivity: expected 4 or 8, found {connectivity!r}")
+
+    tell("reading", 0.0)
+    picture = read(image, spacing=spacing, origin=origin, page=page, max_pixels=max_pixels)
+    frame = picture.frame
+
+    tell("labels", 0.1)
+    if recipe != "conforming" and threshold is None and not labels:
+        threshold = PAPER_THRESHOLD
+    zones = find_zones(picture, threshold=threshold, labels=labels, background=background, invert=invert)
+
+    tell("outlines", 0.2)
+    outlines, links = trace_outlines(zones, frame, connectivity=connectivity, corners=corners, outline=outline)
+    if len(outlines.labels) == 1:
+        raise ImageError(f"image: expected pixels to mesh, found none{_above(zones.threshold)}")
+
+    tell("points", 0.3)
+    within = frame.length("tolerance", tolerance) / frame.pixel
+    length = _edge_length(edge_length, pixel_areas(links), frame)
+    if recipe == "conforming":
+        made = conform(
+            outlines, links, edge_length=length, tolerance=within, min_angle=min_angle, corners=corners,
+            keep_area=keep_area, seed=seed, progress=tell,
+        )  # fmt: skip
+    else:
+        if edge_length is None:
+            paper.setdefault("step", PAPER_STEP)
+        passes = iterations if (smoothing or PAPER_SMOOTHING[recipe]) == "uniform" else 0
+        made = paper_mesh(
+            zones.labels, frame, recipe=recipe, background=zones.background, edge_length=length,
+            iterations=passes, seed=seed, **paper,
+        )  # fmt: skip
+
+    settings = {
+        "threshold": zones.threshold.value if zones.threshold else None,
+        "threshold_from": zones.threshold.how if zones.threshold else None,
+        "labels": labels if labels is None or isinstance(labels, bool) else sorted(labels),
+        "background": zones.background,
+        "invert": invert,
+        "connectivity": connectivity,
+        "outline": outline,
+        "corners": corners,
+        "edge_length": length * frame.pixel,
+        "min_angle": min_angle,
+        "tolerance": within * frame.pixel,
+        "keep_area": keep_area,
+        "smoothing": smoothing,
+        "iterations": iterations,
+        "spacing": frame.spacing,
+        "seed": seed,
+        "source": picture.source,
+        **paper,
+    }
+    mesh = TriangleMesh(
+        frame.world(made.vertices), made.triangles, outlines.labels[made.regions], frame, names or {},
+        Origin(
+            recipe, settings, outlines, *pixels_beside(links), _expected_areas(zones, outlines, links), counted=made.counted,
+            **({"tolerance": within, "min_angle": min_angle} if recipe == "conforming" else {}),
+        ),
+    )  # fmt: skip
+
+    tell("smoothing", 0.9)
+    if smoothing == "cotangent":
+        mesh = mesh.smoothed("cotangent", iterations=iterations, boundary="free", tolerance=tolerance)
+    elif smoothing == "uniform" and recipe == "conforming":
+        mesh = mesh.smoothed("uniform", iterations=iterations)
+    tell("done", 1.0)
+    return mesh
+
+
+def _above(level: Level | None) -> str:
+    """Say in an error where it was looked."""
+    if level is None:
+        return ", only background; see background="
+    return f" above the threshold {level.value:g} ({level.how}); try another threshold=, or invert=True"
+
+
+def _expected_areas(zones: Zones, outlines: Outlines, links: Links) -> Floats:
+    """Area each region should have: that of its pixels, or, where gray values place the outlines, that within them."""
+    return pixel_areas(links) if zones.gray is None else enclosed_areas(outlines)
+
+
+def _edge_length(wanted: float | str | None, areas: Floats, frame: Frame) -> float:
+    """Return the wanted length of edges in px; equilateral triangles of the default one fill the regions about `USUAL_TRIANGLES` times."""
+    if wanted is not None:
+        return frame.length("edge_length", wanted) / frame.pixel
+    return max(4.0, math.sqrt(areas[1:].sum() / USUAL_TRIANGLES * 4 / math.sqrt(3)))
+
+
+def _silent(stage: str, fraction: float) -> None:
+    """Report to nobody."""

@@ -1,0 +1,81 @@
+"""What an array of pixels is: the check every stage of this room makes at its door.
+
+In: anything a user may pass as an image. Out: the same values as an array of one of the types the room works with, without
+a copy where there is nothing to change.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from img2tri.errors import ImageError
+
+Pixels = NDArray[Any]
+
+
+def pixels(image: object, *, colours: bool = True, name: str = "image") -> Pixels:
+    """Return `image` as an array of pixels, or say why it is not one.
+
+    Parameters
+    ----------
+    image
+        Array-like of shape (h, w), or (h, w, 3 or 4) with `colours`; bool, integer or floating point, all values finite.
+    colours
+        Whether a third axis of red, green, blue and perhaps alpha is allowed.
+    name
+        What messages call it.
+
+    Returns
+    -------
+    ndarray
+        The values in the byte order of the machine. float16 becomes float32 and longer floats float64; all else keeps its type.
+
+    Raises
+    ------
+    ImageError
+        For any other type, shape or value.
+
+    Examples
+    --------
+    >>> pixels([[0, 255], [255, 0]]).shape
+    (2, 2)
+    >>> pixels([0, 1, 2])
+    Traceback (most recent call last):
+    ...
+    img2tri.errors.ImageError: image: expected shape (h, w), or (h, w, 3 or 4) with colours, found (3,)
+    """
+    if isinstance(image, np.ndarray) and hasattr(image, "filled"):  # numpy.ma takes long to load, and is hardly ever met
+        raise ImageError(f"{name}: expected a plain array, found a masked one; fill it first, for example with image.filled(0)")
+    try:
+        values = np.asarray(image)
+    except ValueError as error:
+        raise ImageError(f"{name}: expected an array of pixels, found rows of unequal length") from error
+    if values.dtype.kind not in "buif":
+        what = type(image).__name__ if values.ndim == 0 else f"an array of type {values.dtype}"
+        raise ImageError(f"{name}: expected an array of bool, integer or floating point values, found {what}")
+    if not (values.ndim == 2 or (colours and values.ndim == 3 and values.shape[2] in (3, 4))):
+        expected = "shape (h, w), or (h, w, 3 or 4) with colours" if colours else "shape (h, w)"
+        stack = "; pick one image of a stack, for example image[0]" if values.ndim > 2 else ""
+        raise ImageError(f"{name}: expected {expected}, found {values.shape}{stack}")
+    if values.size == 0:
+        raise ImageError(f"{name}: expected at least one pixel, found shape {values.shape}")
+    return _plain(_finite(values, name))
+
+
+def _finite(values: Pixels, name: str) -> Pixels:
+    # A NaN is the minimum of all it is among, so two numbers tell about all.
+    if values.dtype.kind == "f" and not (np.isfinite(values.min()) and np.isfinite(values.max())):
+        count = int((~np.isfinite(values)).sum())
+        raise ImageError(f"{name}: expected finite values, found {count} NaN or infinite; replace them, for example with numpy.nan_to_num")
+    return values
+
+
+def _plain(values: Pixels) -> Pixels:
+    """Give values the types numpy, OpenCV and the other rooms all know."""
+    dtype = values.dtype.newbyteorder("=")
+    if dtype.kind == "f" and dtype.itemsize not in (4, 8):
+        dtype = np.dtype(np.float32 if dtype.itemsize < 4 else np.float64)
+    return values.astype(dtype, copy=False)

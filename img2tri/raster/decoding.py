@@ -1,0 +1,252 @@
+"""A file -> the values in it, what was noted while reading, and the size of a pixel in millimetres if the file says it.
+
+Pillow decodes: it keeps palette indices and bit depth, reports truncated files and knows EXIF. It loses bits in two
+places, which are read otherwise: PNG colours of 16 bit by OpenCV, and TIFFs of types Pillow has no mode for by tifffile.
+"""
+
+from __future__ import annotations
+
+import struct
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from PIL import Image, UnidentifiedImageError
+
+from img2tri.errors import FileError, ImageError, Img2triError, ParameterError
+from img2tri.raster.checking import Pixels
+from img2tri.raster.tags import Size, exif, millimetres, orientation, pixel_size, upright
+
+Decoded = tuple[Pixels, dict[str, Any], Size | None]
+
+BITS, SAMPLE_FORMAT = 258, 339  # tags of TIFF
+ASSOCIATED = 1  # TIFF's word for colours multiplied by their alpha
+TIFF_STARTS = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
+DRAWINGS = ("EPS", "WMF")
+
+# Modes of Pillow whose arrays are the values in the file; the others become one of these.
+PLAIN_MODES = ("1", "L", "P", "RGB", "RGBA", "I", "F", "I;16", "I;16B", "I;16L", "I;16N")
+CONVERTED_MODES = {"LA": "RGBA", "RGBa": "RGBA", "PA": "RGBA", "RGBX": "RGB", "CMYK": "RGB", "YCbCr": "RGB"}
+
+_limit_lock = threading.Lock()
+
+
+def decode(path: Path, page: int, max_pixels: int) -> Decoded:
+    """Decode one image of a file.
+
+    Parameters
+    ----------
+    path
+        The file.
+    page
+        Which image of a file with several, from 0.
+    max_pixels
+        Refuse an image with more.
+
+    Returns
+    -------
+    values, notes, size
+        Pixels upright; see `reading.read` for the notes; (dx, dy) in millimetres or None.
+
+    Raises
+    ------
+    FileError
+        If the file is missing, a folder, not an image, damaged or truncated.
+    ImageError
+        If it has more than `max_pixels`.
+    ParameterError
+        If it has no such page.
+    """
+    start = _start(path)
+    try:
+        if start[:4] in TIFF_STARTS and not _pillow_reads_tiff(path, page):
+            return _decode_tiff(path, page, max_pixels)
+        return _decode(path, start, page, max_pixels)
+    except (Img2triError, MemoryError):
+        raise
+    except UnidentifiedImageError as error:
+        raise FileError(f"image: {str(path)!r} is not an image in a known format") from error
+    except Exception as error:
+        # Decoders meet damaged data with errors of every type.
+        raise FileError(f"image: {str(path)!r} is damaged or truncated ({error})") from error
+
+
+def _start(path: Path) -> bytes:
+    """Return the first bytes of a file, or say why there are none."""
+    if path.is_dir():
+        raise FileError(f"image: expected a file, found the folder {str(path)!r}")
+    try:
+        with path.open("rb") as file:
+            start = file.read(32)
+    except FileNotFoundError as error:
+        raise FileError(f"image: there is no file {str(path)!r}") from error
+    except (OSError, ValueError) as error:
+        raise FileError(f"image: {str(path)!r} cannot be opened ({error})") from error
+    if not start:
+        raise FileError(f"image: {str(path)!r} is empty")
+    return start
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[Image.Image]:
+    """Open a file with Pillow, whose own limit of pixels, a global one, is set aside for that moment: `max_pixels` is ours.
+
+    Pillow is not given the path, as it would map the file into memory, and scrambles turned TIFFs when it does (13.0).
+    """
+    with path.open("rb") as file:
+        with _limit_lock:
+            limit = Image.MAX_IMAGE_PIXELS
+            Image.MAX_IMAGE_PIXELS = None
+            try:
+                img = Image.open(file)
+            finally:
+                Image.MAX_IMAGE_PIXELS = limit
+        with img:
+            yield img
+
+
+def _check(path: Path, page: int, pages: int, width: int, height: int, max_pixels: int) -> dict[str, Any]:
+    """Check page and size before anything is decoded, and note the page."""
+    if page >= pages:
+        raise ParameterError(f"page: expected 0 to {pages - 1} in {str(path)!r}, found {page}")
+    if width * height > max_pixels:
+        raise ImageError(
+            f"image: expected at most max_pixels={max_pixels} pixels, found {width} x {height} in {str(path)!r}; "
+            "raise max_pixels if the file can be trusted"
+        )
+    return {"pages": pages, "page": page} if pages > 1 else {}
+
+
+def _decode(path: Path, start: bytes, page: int, max_pixels: int) -> Decoded:
+    with _opened(path) as img:
+        kind = str(img.format)
+        if kind in DRAWINGS:
+            raise FileError(f"image: {str(path)!r} is a drawing ({kind}), not pixels; convert it to PNG first")
+        pages = int(getattr(img, "n_frames", 1))
+        notes = {"format": kind} | _check(path, page, pages, *img.size, max_pixels)
+        if page:
+            img.seek(page)
+            _check(path, page, pages, *img.size, max_pixels)
+        turn, size = orientation(exif(img)), pixel_size(img)
+        img.load()
+        deep = _deep_png(path, start) if page == 0 else None
+        values, palette = (deep, None) if deep is not None else _values(img)
+        if palette is not None:
+            notes["palette"] = palette
+    # Pillow turns TIFFs itself while loading.
+    return _turned(values if kind == "TIFF" else upright(values, turn), turn, notes, size)
+
+
+def _turned(values: Pixels, turn: int, notes: dict[str, Any], size: Size | None) -> Decoded:
+    """Note that an image was turned, and turn the size of its pixels."""
+    if turn > 1:
+        notes = notes | {"orientation": turn}
+    return values, notes, size[::-1] if size is not None and turn >= 5 else size
+
+
+def _values(img: Image.Image) -> tuple[Pixels, Pixels | None]:
+    """Return the values of a loaded image, and the palette if they are indices."""
+    if img.mode == "P":
+        return np.asarray(img), _palette(img)
+    if img.mode == "La":  # gray multiplied by alpha
+        gray, alpha = img.split()
+        img = Image.merge("RGBa", (gray, gray, gray, alpha))
+    if img.mode in CONVERTED_MODES:
+        img = img.convert(CONVERTED_MODES[img.mode])
+    if img.mode not in PLAIN_MODES:
+        raise ImageError(f"image: expected gray values, a palette, RGB or CMYK, found the colour space {img.mode}; convert it first")
+    values = np.asarray(img)
+    if img.mode == "I":
+        values = values.astype(_whole_type(img), copy=False)
+    key = img.info.get("transparency")
+    if key is None or img.mode == "RGBA":
+        return values, None
+    # One gray value or colour of the file stands for full transparency.
+    seen = (values != np.asarray(key)).reshape(*values.shape[:2], -1).any(axis=2)
+    colours = np.broadcast_to(values.reshape(*values.shape[:2], -1), (*values.shape[:2], 3))
+    most = 1 if values.dtype == bool else np.iinfo(values.dtype).max
+    return np.dstack([colours, seen * np.asarray(most, values.dtype)]), None
+
+
+def _whole_type(img: Image.Image) -> type[np.integer[Any]]:
+    """Return the type of the values in the file: Pillow has int32 for all whole numbers it has no other mode for."""
+    if img.format != "TIFF":
+        return np.uint16 if img.format == "PPM" else np.int32
+    bits, kind = (img.tag_v2.get(tag, (1,))[0] for tag in (BITS, SAMPLE_FORMAT))  # type: ignore[attr-defined]
+    return np.uint32 if kind == 1 else np.int16 if bits == 16 else np.int32
+
+
+def _palette(img: Image.Image) -> Pixels:
+    """Return the 256 colours of a palette, with alpha where it has any; colours beyond its end are black."""
+    assert img.palette is not None
+    channels = "RGBA" if "transparency" in img.info or img.palette.mode == "RGBA" else "RGB"
+    img.apply_transparency()
+    table = np.asarray(img.getpalette(channels), np.uint8).reshape(-1, len(channels))
+    black = np.array([0, 0, 0, 255], np.uint8)[: len(channels)]
+    return np.vstack([table, np.broadcast_to(black, (max(0, 256 - len(table)), len(channels)))])
+
+
+def _deep_png(path: Path, start: bytes) -> Pixels | None:
+    """Return the values of a PNG with colours of 16 bit, of which Pillow keeps 8; None for any other image.
+
+    Pillow has decoded the file before, so it is whole.
+    """
+    if start[:8] != b"\x89PNG\r\n\x1a\n" or start[24] != 16 or start[25] not in (2, 4, 6):
+        return None
+    import cv2
+
+    values: Pixels = np.asarray(cv2.imdecode(np.fromfile(path, np.uint8), cv2.IMREAD_UNCHANGED))
+    return values[..., [2, 1, 0, 3][: values.shape[2]]]  # OpenCV's order is blue, green, red
+
+
+def _pillow_reads_tiff(path: Path, page: int) -> bool:
+    """Tell whether Pillow has a mode for the values of a TIFF that loses nothing.
+
+    Values of mode I and F come out in the wrong byte order if the file is big-endian and compressed (13.0).
+    """
+    try:
+        with _opened(path) as img:
+            if page < int(getattr(img, "n_frames", 1)):
+                img.seek(page)
+            bits, kinds = set(img.tag_v2.get(BITS, (1,))), set(img.tag_v2.get(SAMPLE_FORMAT, (1,)))  # type: ignore[attr-defined]
+            wide = ("I;16", "I;16B", "I", "F") if img.tag_v2.prefix == b"II" else ("I;16", "I;16B")  # type: ignore[attr-defined]
+            return (max(bits) <= 8 and kinds == {1}) or (max(bits) <= 32 and img.mode in wide)
+    except (OSError, SyntaxError, ValueError, KeyError, struct.error):
+        return False
+
+
+def _decode_tiff(path: Path, page: int, max_pixels: int) -> Decoded:
+    """Decode a TIFF of a type Pillow has no mode for: int64, float64, int8, colours of 16 bit."""
+    try:
+        import tifffile
+    except ImportError as error:
+        raise FileError(f"image: {str(path)!r} is a TIFF only tifffile can read; install it with  pip install 'img2tri[tiff]'") from error
+    with tifffile.TiffFile(path) as file:
+        pages = len(file.pages)
+        sheet = file.pages[min(page, pages - 1)].aspage()
+        notes = {"format": "TIFF"} | _check(path, page, pages, sheet.imagewidth, sheet.imagelength, max_pixels)
+        values = np.asarray(sheet.asarray())
+        tags = {tag.code: tag.value for tag in sheet.tags}
+        colormap, multiplied = sheet.colormap, tuple(sheet.extrasamples) == (ASSOCIATED,)
+        if sheet.axes == "SYX":
+            values = np.moveaxis(values, 0, 2)
+    if values.ndim == 3 and values.shape[2] == 2:  # gray and alpha
+        values = values[..., [0, 0, 0, 1]]
+    if multiplied and values.shape[2:] == (4,):
+        values = _divided(values)
+    if colormap is not None:
+        notes["palette"] = (np.asarray(colormap).T >> 8).astype(np.uint8)
+    turn = orientation(tags)
+    return _turned(upright(values, turn), turn, notes, millimetres(tags))
+
+
+def _divided(values: Pixels) -> Pixels:
+    """Divide colours by the alpha they were multiplied with; where that is 0 they are black."""
+    colours, alpha = values[..., :3], values[..., 3:].astype(np.float64)
+    whole = values.dtype.kind in "iu"
+    full = float(np.iinfo(values.dtype).max) if whole else 1.0
+    colours = np.minimum(full, np.divide(colours * full, alpha, out=np.zeros(colours.shape), where=alpha > 0))
+    return np.dstack([np.rint(colours) if whole else colours, alpha]).astype(values.dtype)

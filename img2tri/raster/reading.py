@@ -1,0 +1,128 @@
+"""A path, an array or a ``pyvista.ImageData`` -> a `Picture`: the values as they are, and where they lie in the world.
+
+Nothing is scaled, thresholded or turned into gray here, so label numbers, 16-bit values and palette indices survive.
+Files are decoded by Pillow rather than by ``cv2.imread``, which hides much of what matters: it hands out a partial image for a
+truncated JPEG, ignores the orientation a camera noted, and replaces palette indices, which may be labels, by colours.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from img2tri.errors import ParameterError, finite, integer
+from img2tri.raster.checking import pixels
+from img2tri.raster.imagedata import from_image_data, is_image_data
+from img2tri.records import Frame, Picture
+
+Pair = tuple[float, float]
+
+
+def read(
+    image: Any,
+    *,
+    spacing: float | Sequence[float] | str | None = None,
+    origin: str | Sequence[float] = "lower",
+    page: int = 0,
+    max_pixels: int = 2**28,
+) -> Picture:
+    """Read an image, and say where its pixels lie.
+
+    Parameters
+    ----------
+    image
+        A path (str or PathLike); an array (h, w) or (h, w, 3 or 4) of bool, integers or floats; or a planar
+        ``pyvista.ImageData``, whose active scalars are taken (its first ones if none are active).
+    spacing
+        The size of a pixel in world units: a number, a pair (dx, dy), or "file", which takes the resolution noted in a TIFF,
+        PNG or JPEG file, in millimetres. None is 1, whatever the file says, since many files carry a resolution of 72 dpi nobody
+        chose; an ImageData always keeps its own.
+    origin
+        "lower": x points right and y up, the lower-left corner of the image is at (0, 0). "upper": y points down, as in image
+        coordinates, the corner of the first pixel is at (0, 0). A pair (x, y): as "lower", with the corner there.
+    page
+        Which image of a file with several, from 0.
+    max_pixels
+        A file that claims more pixels than this is refused before it is decoded, so that a small file cannot fill the memory.
+
+    Returns
+    -------
+    Picture
+        Its `notes` hold what was found in a file: "format"; "pages" where there are several, and the "page" taken;
+        "orientation" (EXIF, 2 to 8) where the image had to be turned; "palette", (n, 3 or 4) uint8, where the values are
+        indices into it; "spacing", "file" or "ImageData", where it was not given in numbers.
+
+    Raises
+    ------
+    FileError
+        If the file is missing, a folder, not an image, damaged or truncated.
+    ImageError
+        If the values are not those of an image: wrong shape or type, no pixels, NaN or infinite, too many pixels.
+    ParameterError
+        If `spacing`, `origin`, `page` or `max_pixels` is not as described.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> picture = read(np.zeros((20, 30)), spacing=0.5)
+    >>> picture.frame.bounds
+    (0.0, 0.0, 15.0, 10.0)
+    """
+    page, max_pixels = integer("page", page), integer("max_pixels", max_pixels, least=1)
+    if is_image_data(image):
+        if spacing is not None or not (isinstance(origin, str) and origin == "lower") or page:
+            raise ParameterError("spacing, origin, page: a pyvista.ImageData has its own place; leave them out, or change the object")
+        return from_image_data(image)
+    corner, upward = _corner(origin)
+    notes: dict[str, Any] = {}
+    if isinstance(image, (str, os.PathLike)):
+        from img2tri.raster.decoding import decode  # Pillow is loaded for files only
+
+        source = str(Path(image))
+        values, notes, noted = decode(Path(image), page, max_pixels)
+    else:
+        source, noted = "array", None
+        if page:
+            raise ParameterError(f"page: expected 0 for an array, which is one image, found {page}")
+        values = image
+    values = pixels(values)
+    size = _spacing(spacing, noted, source)
+    if isinstance(spacing, str):
+        notes["spacing"] = spacing
+    h, w = values.shape[:2]
+    return Picture(values, Frame((h, w), size, corner, upward), source, notes)
+
+
+def _spacing(spacing: float | Sequence[float] | str | None, noted: Pair | None, source: str) -> Pair:
+    if spacing is None:
+        return 1.0, 1.0
+    if isinstance(spacing, str):
+        if spacing != "file":
+            raise ParameterError(f"spacing: expected a number, a pair (dx, dy), 'file' or None, found {spacing!r}")
+        if noted is None:
+            raise ParameterError(f"spacing: 'file' expected a resolution with a unit in {source!r}, found none; give the size of a pixel")
+        return noted
+    dx, dy = _pair("spacing", spacing) if _is_sequence(spacing) else (spacing, spacing)
+    return finite("spacing", dx, above=0), finite("spacing", dy, above=0)
+
+
+def _corner(origin: str | Sequence[float]) -> tuple[Pair, bool]:
+    if isinstance(origin, str) and origin in ("lower", "upper"):
+        return (0.0, 0.0), origin == "lower"
+    if not _is_sequence(origin):
+        raise ParameterError(f"origin: expected 'lower', 'upper' or a pair (x, y), found {origin!r}")
+    x, y = _pair("origin", origin)
+    return (finite("origin", x), finite("origin", y)), True
+
+
+def _is_sequence(value: object) -> bool:
+    return hasattr(value, "__len__") and not isinstance(value, (str, bytes)) and getattr(value, "ndim", 1) == 1
+
+
+def _pair(name: str, value: Any) -> tuple[Any, Any]:
+    if len(value) != 2:
+        raise ParameterError(f"{name}: expected a pair of numbers, found {len(value)}: {value!r}")
+    first, second = value
+    return first, second

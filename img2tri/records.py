@@ -1,0 +1,246 @@
+"""The small frozen records the rooms hand to each other: where an image lies, what was read, what its outlines are.
+
+Points not yet joined to triangles are `points`; the corners of triangles are `vertices`.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from img2tri.errors import ParameterError, finite
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Where an image lies in the world.
+
+    Pixel (row r, column c) is the square [r, r + 1] x [c, c + 1] of the image; h x w pixels cover exactly h * dy by w * dx.
+
+    Attributes
+    ----------
+    shape
+        (h, w), rows and columns.
+    spacing
+        (dx, dy), the size of a pixel in world units.
+    corner
+        (x, y) of the lower-left corner of the image with `upward`, else of the corner of row 0, column 0.
+    upward
+        True: y grows from the last row to the first (x right, y up). False: y grows with the row, as in image coordinates.
+    z
+        Height of the plane the mesh lies in; other than 0 only for images that know it.
+    """
+
+    shape: tuple[int, int]
+    spacing: tuple[float, float] = (1.0, 1.0)
+    corner: tuple[float, float] = (0.0, 0.0)
+    upward: bool = True
+    z: float = 0.0
+
+    def xy(self, rows: ArrayLike, columns: ArrayLike) -> Floats:
+        """Turn (row, column) into (x, y): the one place where image coordinates become world coordinates.
+
+        Examples
+        --------
+        The centre of the first pixel of an image of 2 rows and 3 columns:
+
+        >>> Frame((2, 3)).xy([0.5], [0.5])
+        array([[0.5, 1.5]])
+        """
+        return self.world(self.plane(rows, columns))
+
+    def plane(self, rows: ArrayLike, columns: ArrayLike) -> Floats:
+        """Turn (row, column) into the plane all geometry is done in: the world, moved to the origin and measured in pixels.
+
+        Its unit is `pixel`, so that tolerances mean the same for every image, and a mesh scales exactly with `spacing`.
+        """
+        r, c = np.asarray(rows, np.float64), np.asarray(columns, np.float64)
+        up = self.shape[0] - r if self.upward else r
+        return np.stack([c * (self.spacing[0] / self.pixel), up * (self.spacing[1] / self.pixel)], axis=-1)
+
+    def world(self, points: Floats) -> Floats:
+        """Turn points of the plane into world coordinates."""
+        return np.asarray(points) * self.pixel + self.corner
+
+    def row_column(self, points: Floats) -> tuple[Floats, Floats]:
+        """Turn (x, y) into (row, column), the inverse of `xy`."""
+        c = (points[..., 0] - self.corner[0]) / self.spacing[0]
+        up = (points[..., 1] - self.corner[1]) / self.spacing[1]
+        return (self.shape[0] - up if self.upward else up), c
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """(left, bottom, right, top) of the image in the world: `bottom` is the least y."""
+        (h, w), (dx, dy), (x, y) = self.shape, self.spacing, self.corner
+        return x, y, x + w * dx, y + h * dy
+
+    @property
+    def pixel(self) -> float:
+        """The smaller side of a pixel: the unit "px"."""
+        return min(self.spacing)
+
+    @property
+    def diagonal(self) -> float:
+        """The diagonal of the image: 100 of the unit "%"."""
+        return math.hypot(self.shape[0] * self.spacing[1], self.shape[1] * self.spacing[0])
+
+    def length(self, name: str, value: float | str, *, zero: bool = False) -> float:
+        """Turn a length given by a user into world units: a number, "8px" (smaller pixel side) or "2%" (of the diagonal).
+
+        Examples
+        --------
+        >>> Frame((30, 40), spacing=(0.5, 0.5)).length("edge_length", "8px")
+        4.0
+        >>> Frame((30, 40), spacing=(0.5, 0.5)).length("edge_length", "2%")
+        0.5
+        """
+        return _quantity(name, value, {"": 1.0, "px": self.pixel, "%": self.diagonal / 100}, "8, '8px' or '2%'", zero)
+
+    def area(self, name: str, value: float | str, *, zero: bool = True) -> float:
+        """Turn an area given by a user into world units: a number, or "4px2" (pixels).
+
+        Examples
+        --------
+        >>> Frame((30, 40), spacing=(0.5, 0.5)).area("min_area", "4px2")
+        1.0
+        """
+        return _quantity(name, value, {"": 1.0, "px2": self.spacing[0] * self.spacing[1]}, "4 or '4px2'", zero)
+
+
+def _quantity(name: str, value: float | str, units: dict[str, float], example: str, zero: bool) -> float:
+    if isinstance(value, str):
+        match = re.fullmatch(r"\s*([-+.\deE]+?)\s*(px2|px|%|)\s*", value)
+        if match is None or match[2] not in units:
+            raise ParameterError(f"{name}: expected a number with a unit, like {example}, found {value!r}")
+        try:
+            number: object = float(match[1])
+        except ValueError:
+            number = value
+        scale = units[match[2]]
+    else:
+        number, scale = value, 1.0
+    return scale * (finite(name, number, least=0) if zero else finite(name, number, above=0))
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """An image as read: its values and its place.
+
+    Attributes
+    ----------
+    values
+        (h, w) bool, int or float, or (h, w, 3 or 4) with colours; as the file or array has them, no scaling.
+    frame
+        Where it lies.
+    source
+        What it was read from, for people: a path or "array".
+    notes
+        What was decided while reading (page, orientation, palette), for the report.
+    """
+
+    values: NDArray[Any]
+    frame: Frame
+    source: str = "array"
+    notes: dict[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class Outlines:
+    """The outlines of all regions as one network of chains, each shared by the two regions it parts.
+
+    A chain runs between two nodes (junctions, points on the frame, corners of the image) or is a ring of its own. It has
+    one region on its left and one on its right, as seen along the chain where x points right and y up.
+
+    Attributes
+    ----------
+    points
+        (n, 2) float64, in the plane (see `Frame.plane`) or the world; each appears once.
+    indices
+        (k,) int64, the points of all chains one after the other, ends included. A ring repeats its first point.
+    starts
+        (c + 1,) int64: chain i is ``indices[starts[i]:starts[i + 1]]``.
+    left, right
+        (c,) int64, the numbers of the regions on either side; 0 is what is not meshed, inside or outside of the image.
+    labels
+        (r,) int64, the image's own label of each region number; entry 0 only keeps the place.
+    """
+
+    points: Floats
+    indices: Ints
+    starts: Ints
+    left: Ints
+    right: Ints
+    labels: Ints
+
+    @property
+    def segments(self) -> tuple[Ints, Ints, Ints]:
+        """All segments (s, 2) of all chains in order, and the region numbers (s,) on their left and right."""
+        inside = np.ones(len(self.indices), bool)
+        inside[self.starts[1:] - 1] = False
+        first = np.flatnonzero(inside)
+        chain = np.repeat(np.arange(len(self.left)), np.diff(self.starts) - 1)
+        return np.stack([self.indices[first], self.indices[first + 1]], axis=1), self.left[chain], self.right[chain]
+
+
+@dataclass(frozen=True, eq=False)
+class Origin:
+    """How a mesh was made, and what it is to be judged by.
+
+    Attributes
+    ----------
+    recipe
+        "conforming", "structured" or "unstructured".
+    settings
+        All options in use, and what was chosen where the user left the choice, as plain data for JSON.
+    outlines
+        The dense outlines of the image, in the plane of the frame.
+    pixels
+        (k, 2) float64, centres of the pixels beside the outlines, in the plane.
+    pixel_regions
+        (k,) int64, the region numbers of these pixels.
+    areas
+        (r,) float64, the area of the pixels of each region number, in the plane; entry 0 is not used.
+    tolerance, min_angle
+        What was promised: in px, in degrees; None where the recipe promises nothing.
+    counted
+        What the recipe counted on the way, for the report.
+    """
+
+    recipe: str
+    settings: dict[str, Any]
+    outlines: Outlines
+    pixels: Floats
+    pixel_regions: Ints
+    areas: Floats
+    tolerance: float | None = None
+    min_angle: float | None = None
+    counted: dict[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class Made:
+    """What a recipe makes of a label map, in the plane of the frame.
+
+    Attributes
+    ----------
+    vertices, triangles
+        (n, 2) float64 and (m, 3) int64, counter-clockwise.
+    regions
+        (m,) int64, region numbers.
+    counted
+        What was counted on the way, for the report.
+    """
+
+    vertices: Floats
+    triangles: Ints
+    regions: Ints
+    counted: dict[str, Any] = field(default_factory=dict)

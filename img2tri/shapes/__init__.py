@@ -1,0 +1,1 @@
+"""SHAPES: label map -> outlines, shapely polygons, spacing, points."""

@@ -1,0 +1,101 @@
+"""Chains unrolled on one line, so that smoothing along all of them is one convolution.
+
+Each chain is continued beyond its ends by `reach` points: a ring goes round once more, an open chain is turned by half a
+turn about its end node, which keeps the node where it is and the direction there steady::
+
+    ring      d e [a b c d e] a b          open      . . [A b c D] . .      turned about A and about D
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from img2tri.records import Bools, Floats, Ints
+
+Points = NDArray[np.complex128]
+
+
+class Unrolled:
+    """The entries of `indices` of some chains, continued at both ends.
+
+    Attributes
+    ----------
+    source
+        (k,) the point each place on the line stands for.
+    own
+        (k,) bool, the place belongs to the chain itself, not to a continuation; each crossing has one such place.
+    ring
+        (k,) bool, the chain is a ring.
+    """
+
+    def __init__(self, indices: Ints, starts: Ints, rings: Bools, chosen: Bools, reach: int) -> None:
+        chains = np.flatnonzero(chosen)
+        first, ring = starts[:-1][chains], rings[chains]
+        steps = np.diff(starts)[chains] - 1  # from the first point to the last; a ring's last is its first again
+        length = steps + np.where(ring, 0, 1) + 2 * reach
+        which = np.repeat(np.arange(len(chains)), length)
+        place = np.arange(len(which)) - np.repeat(np.cumsum(length) - length, length) - reach
+        turns, rest = np.divmod(place, np.where(ring, 1, 2)[which] * steps[which])
+        turned = rest > steps[which]
+        self.source = indices[first[which] + np.where(turned, 2 * steps[which] - rest, rest)]
+        self.ring = ring[which]
+        self.own = (place >= 0) & (place < (length - 2 * reach)[which])
+        # A turn about the last node Z and one about the first node A move a point by 2 (Z - A).
+        self._sign = np.where(turned, -1.0, 1.0)
+        self._first, self._last = indices[first[which]], indices[first[which] + steps[which]]
+        self._from_first = np.where(ring[which], 0.0, -2.0 * turns)
+        self._from_last = np.where(ring[which], 0.0, 2.0 * turns + 2.0 * turned)
+
+    def points(self, z: Points) -> Points:
+        """Lay points out on the line, (n,) to (k,)."""
+        beyond = np.flatnonzero((self._from_first != 0) | (self._from_last != 0))
+        line: Points = self._sign * z[self.source]
+        line[beyond] += self._from_first[beyond] * z[self._first[beyond]] + self._from_last[beyond] * z[self._last[beyond]]
+        return line
+
+
+def convolve(line: Points, kernel: Floats) -> Points:
+    """Convolve complex values with a real kernel of odd length; the result is as long as `line`."""
+    result: Points = np.convolve(line.real, kernel, "same") + 1j * np.convolve(line.imag, kernel, "same")
+    return result
+
+
+def unshrinking(scale: float) -> Floats:
+    """Return the kernel 2 G - G * G of a Gaussian G: it smooths as G does, and takes its shrinkage of curves back.
+
+    Examples
+    --------
+    >>> kernel = unshrinking(2.0)
+    >>> bool(abs(kernel.sum() - 1) < 1e-12), len(kernel)
+    (True, 25)
+    """
+    reach = int(np.ceil(3 * scale))
+    x = np.arange(-reach, reach + 1)
+    g = np.exp(-0.5 * (x / scale) ** 2)
+    g /= g.sum()
+    kernel = -np.convolve(g, g)
+    kernel[reach:-reach] += 2 * g
+    return kernel
+
+
+def widened(marks: Bools, reach: int) -> Bools:
+    """Mark everything within `reach` places of a mark.
+
+    Examples
+    --------
+    >>> widened(np.array([False, False, True, False, False, False]), 1).tolist()
+    [False, True, True, True, False, False]
+    """
+    edges = np.zeros(len(marks) + 1, np.int64)
+    at = np.flatnonzero(marks)
+    np.add.at(edges, np.maximum(at - reach, 0), 1)
+    np.add.at(edges, np.minimum(at + reach + 1, len(marks)), -1)
+    result: Bools = np.cumsum(edges[:-1]) > 0
+    return result
+
+
+def cross(a: Points, b: Points) -> Floats:
+    """Cross product of plane vectors written as complex numbers."""
+    result: Floats = a.real * b.imag - a.imag * b.real
+    return result

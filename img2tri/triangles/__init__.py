@@ -1,0 +1,1 @@
+"""TRIANGLES: points and segments -> triangles; smoothing; quality."""

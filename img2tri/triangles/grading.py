@@ -1,0 +1,111 @@
+"""How long the edges should be at each place, and the nodes that make a lattice finer where they should be shorter.
+
+In: the wanted edge length, and places where something shorter is needed: short segments, points with a size of their own, a field. Out: the
+wanted edge length anywhere, growing by `gradation` per unit of distance away from such places, and nodes of nested
+lattices that follow it.
+
+A hexagonal lattice of pitch a and the centres of its triangles together are a hexagonal lattice of pitch a / sqrt 3, turned by 30 degrees. So each
+lattice contains all coarser ones, and a node has three children: itself, and the centres of two of its triangles. Where a
+lattice of one pitch ends and a coarser one goes on, the nodes of both fit without a seam to be relaxed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from img2tri.records import Bools, Floats, Ints
+from img2tri.triangles.lattice import Complex, Lattice
+
+FINER = 3**0.5  # ratio of pitches from one lattice to the next
+LONGEST = 1.32  # a lattice is used where the wanted length is less than this times its pitch: FINER halved by ratio
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """The wanted edge length as a function of the place.
+
+    Attributes
+    ----------
+    largest
+        Wanted where nothing else is.
+    gradation
+        By how much the wanted length may grow per unit of distance.
+    sources, lengths
+        Places where something shorter than `largest` is wanted, and what.
+    field
+        A function of places (k, 2) that returns lengths (k,). It should itself grow no faster than `gradation`.
+    """
+
+    largest: float
+    gradation: float
+    sources: Complex
+    lengths: Floats
+    field: Callable[[Floats], Floats] | None = None
+
+    @property
+    def uniform(self) -> bool:
+        """Whether the wanted length is the same everywhere."""
+        return not len(self.sources) and self.field is None
+
+    def at(self, points: Complex) -> Floats:
+        """Return the wanted edge length at points."""
+        wanted = np.full(len(points), self.largest)
+        if self.field is not None:
+            wanted = np.minimum(wanted, self.field(pairs(points)))
+        # Least of length + gradation * distance over all sources, found as the nearest source among those of about equal length.
+        level = np.floor(np.log2(self.largest / self.lengths) * 2).astype(np.int64)
+        for k in np.unique(level):
+            sources, lengths = self.sources[level == k], self.lengths[level == k]
+            reach = (self.largest - lengths.min()) / self.gradation
+            distance, nearest = cKDTree(pairs(sources)).query(pairs(points), distance_upper_bound=reach)
+            near = np.flatnonzero(nearest < len(sources))
+            wanted[near] = np.minimum(wanted[near], lengths[nearest[near]] + self.gradation * distance[near])
+        return wanted
+
+
+def pairs(points: Complex) -> Floats:
+    """Turn x + iy into (x, y)."""
+    return np.stack([points.real, points.imag], axis=-1)
+
+
+def finer(lattice: Lattice, nodes: Ints, sizes: Sizes) -> tuple[Ints, Complex, Floats]:
+    """Find the nodes of finer lattices that are needed among those given of the coarsest.
+
+    Returns
+    -------
+    busy : (b,) int64
+        The given nodes that have finer ones around.
+    points : (p,) complex
+        The finer nodes.
+    wanted : (p,) float64
+        Wanted edge length at each.
+    """
+    pitch, turn = lattice.pitch, np.exp(1j * np.pi / 6)
+    points = lattice.positions(nodes)
+    wanted = sizes.at(points)
+    divided = _divided(wanted, pitch, sizes)
+    busy = nodes[divided]
+    needed, lengths = [np.zeros(0, np.complex128)], [np.zeros(0)]
+    while divided.any():
+        points, wanted = points[divided], wanted[divided]
+        # The next lattice: the same nodes, and the centres of two triangles at each.
+        pitch /= FINER
+        children = (points[:, None] + pitch * turn * np.array([1, np.exp(1j * np.pi / 3)])).ravel()
+        turn *= np.exp(1j * np.pi / 6)
+        theirs = sizes.at(children)
+        kept = theirs < LONGEST * pitch
+        needed.append(children[kept])
+        lengths.append(theirs[kept])
+        points, wanted = np.concatenate([points, children]), np.concatenate([wanted, theirs])
+        divided = _divided(wanted, pitch, sizes)
+    return busy, np.concatenate(needed), np.concatenate(lengths)
+
+
+def _divided(wanted: Floats, pitch: float, sizes: Sizes) -> Bools:
+    """Which nodes may have children that are needed: these lie pitch / FINER away, where the wanted length is little less."""
+    divided: Bools = wanted < (LONGEST + sizes.gradation) * pitch / FINER
+    return divided

@@ -1,0 +1,100 @@
+"""The network of outlines, and its segments divided to the wanted edge length."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from img2tri.records import Floats, Ints
+from img2tri.triangles.grading import Sizes
+from img2tri.triangles.lattice import Complex, Labels
+
+ROUND_UP = 0.4  # a segment of n + this many wanted lengths or more is divided into n + 1 parts
+
+
+@dataclass(frozen=True, eq=False)
+class Network:
+    """Points joined by segments, with the regions on both sides.
+
+    Attributes
+    ----------
+    points
+        (n,) complex.
+    segments
+        (s, 2) int64.
+    left, right
+        (s,) int32, codes of the regions: small numbers, 0 for what is not meshed.
+    """
+
+    points: Complex
+    segments: Ints
+    left: Labels
+    right: Labels
+
+    @property
+    def ends(self) -> tuple[Complex, Complex]:
+        """First and last point of each segment."""
+        return self.points[self.segments[:, 0]], self.points[self.segments[:, 1]]
+
+    @property
+    def middles(self) -> Complex:
+        """Middle of each segment."""
+        start, stop = self.ends
+        return (start + stop) / 2
+
+    @property
+    def lengths(self) -> Floats:
+        """Length of each segment."""
+        start, stop = self.ends
+        return np.abs(stop - start)
+
+    def divided(self, sizes: Sizes) -> Network:
+        """Divide segments that are too long for the wanted length, with parts that grow as it does. The points stay the first ones.
+
+        From either end to the middle the wanted length is taken as linear, from a to b. Then a stretch of length l holds l log(b / a) / (b - a)
+        wanted lengths, and the parts of equal share grow in geometric progression.
+        """
+        at_points, at_middles = sizes.at(self.points), sizes.at(self.middles)
+        first, last = at_points[self.segments].T
+        half = self.lengths / 2
+        first_share, last_share = half / _log_mean(first, at_middles), half / _log_mean(last, at_middles)
+        shares = first_share + last_share
+        parts = np.maximum(1, np.ceil(shares - ROUND_UP)).astype(np.int64)
+        of, part = runs(parts)
+        new = np.flatnonzero(part > 0)
+        share = (part / parts[of] * shares[of])[new]
+        # Measured from the nearer end, in shares of the half on this side.
+        head = share < first_share[of[new]]
+        end = np.where(head, first[of[new]], last[of[new]])
+        within = np.where(head, share / first_share[of[new]], (shares[of[new]] - share) / last_share[of[new]])
+        way = _geometric(within, at_middles[of[new]] / end) / 2
+        start, stop = self.ends
+        points = start[of[new]] + (stop - start)[of[new]] * np.where(head, way, 1 - way)
+        begin = self.segments[of, 0]
+        begin[new] = len(self.points) + np.arange(len(new))
+        end_ = self.segments[of, 1]
+        end_[new - 1] = begin[new]
+        return Network(np.concatenate([self.points, points]), np.stack([begin, end_], axis=1), self.left[of], self.right[of])
+
+
+def runs(counts: Ints) -> tuple[Ints, Ints]:
+    """Return, for counts 2, 1, 3, the number of the run 0 0 1 2 2 2 and the place in the run 0 1 0 0 1 2."""
+    of = np.repeat(np.arange(len(counts)), counts)
+    return of, np.arange(len(of)) - np.repeat(np.cumsum(counts) - counts, counts)
+
+
+def _log_mean(a: Floats, b: Floats) -> Floats:
+    """Logarithmic mean (b - a) / log(b / a), which is a where b is."""
+    x = np.log(b / a)
+    small = np.abs(x) < 1e-5
+    mean: Floats = a * np.where(small, 1 + x / 2, np.expm1(x) / np.where(small, 1, x))
+    return mean
+
+
+def _geometric(share: Floats, ratio: Floats) -> Floats:
+    """Part of the way after a share of steps that grow by `ratio` from the first to the last."""
+    x = np.log(ratio)
+    small = np.abs(x) < 1e-5
+    way: Floats = np.where(small, share, np.expm1(share * x) / np.where(small, 1, np.expm1(x)))
+    return way

@@ -1,0 +1,109 @@
+"""Moving vertices so that triangles become as equilateral as they can.
+
+The shape of a triangle (a, b, c), counter-clockwise, is told by two complex numbers, with w = exp(2 pi i / 3):
+
+    X = a + w b + w^2 c        0 if and only if the triangle is equilateral: its *defect*
+    Y = a + w^2 b + w c        its size and direction
+
+They say all: the squares of the edges sum to |X|^2 + |Y|^2, the area is (|Y|^2 - |X|^2) / (4 sqrt 3), and the quality
+4 sqrt(3) area / (sum of squares) = (|Y|^2 - |X|^2) / (|Y|^2 + |X|^2) is 1 for equilateral triangles, 0 for flat ones. To make its triangle
+equilateral, corner a alone would have to move by -X, corner b by -w^2 X, corner c by -w X.
+
+`relaxed` moves every vertex by the mean of what its triangles ask, weighted by quality^-power: Jacobi steps down the energy
+sum of weight |X|^2, with a matrix C diag(weight) C* where C has a row per vertex and a column per triangle. With power 2 that is a quick smoother; large powers
+hear only the worst triangle of each vertex, which is hill climbing for the smallest angle, but in a few array operations for all vertices.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from img2tri.records import Bools, Floats, Ints
+from img2tri.triangles.lattice import Complex
+
+TURN = np.exp(2j * np.pi / 3)
+DEFECT = np.array([1, TURN, TURN**2])
+FLATTEST = 0.05  # qualities below this weigh as much as this, else one flat triangle stops its neighbours
+
+Schedule = Sequence[tuple[int, float, int]]
+"""Rows of (doublings, damping, steps): the power of the weights is 2 to the number of doublings."""
+TARGET, ROUNDS, MARGIN = 44.0, 2, 2.0
+SMOOTH: Schedule = ((1, 1.0, 6),)
+AGAIN: Schedule = ((1, 1.0, 3), (1, 0.8, 3))
+ANNEAL: Schedule = ((2, 0.6, 4), (3, 0.5, 5), (4, 0.3, 6))
+CLIMB: Schedule = ((5, 0.3, 8), (6, 0.2, 12), (7, 0.1, 30))
+
+
+def shapes(vertices: Complex, triangles: Ints) -> tuple[Complex, Floats]:
+    """Return defect X and quality of triangles; the quality is at most 1, and negative for clockwise triangles."""
+    a, b, c = (vertices[corner] for corner in triangles.T)
+    # X, Y = median +- side, where the side is turned by 90 degrees and made as long as the median should be.
+    median, side = a - (b + c) / 2, (b - c) * (0.75**0.5 * 1j)
+    cross = median.real * side.real + median.imag * side.imag
+    squares = median.real**2 + median.imag**2 + side.real**2 + side.imag**2
+    return median + side, -2 * cross / squares
+
+
+def smallest_angles(vertices: Complex, triangles: Ints) -> Floats:
+    """Return the smallest angle of each triangle in degrees; negative for clockwise ones."""
+    a, b, c = (vertices[corner] for corner in triangles.T)
+    u, v, w = b - a, c - b, a - c
+    squares = [side.real**2 + side.imag**2 for side in (u, v, w)]
+    shortest = np.minimum(np.minimum(*squares[:2]), squares[2])
+    # The smallest angle lies opposite the shortest side: cot = (sum of the other squares - its square) / (4 area).
+    area = u.real * v.imag - u.imag * v.real
+    angles: Floats = np.degrees(np.arctan2(2 * area, sum(squares) - 2 * shortest))
+    return angles
+
+
+def relaxed(vertices: Complex, triangles: Ints, free: Bools, schedule: Schedule) -> Complex:
+    """Move the free vertices (bool) by damped steps. The worst angle does not fall, nor does any one fall below 30 degrees."""
+    moved = vertices.copy()
+    n, m = len(vertices), len(triangles)
+    used = np.zeros(n, bool)
+    used[triangles] = True
+    where = np.flatnonzero(free & used)
+    # One row per free vertex, one column per triangle.
+    places = (triangles.ravel(), np.repeat(np.arange(m), 3))
+    weighed = csr_array((np.ones(3 * m), places), shape=(n, m))[where]
+    asked = csr_array((np.tile(-DEFECT.conj(), m), places), shape=(n, m))[where]
+    for doublings, damping, steps in schedule:
+        for _ in range(steps):
+            defect, quality = shapes(moved, triangles)
+            weight = 1 / np.maximum(quality, FLATTEST)
+            for _ in range(doublings):
+                weight *= weight
+            moved[where] += damping * (asked @ (weight * defect)) / (weighed @ weight)
+    return _guarded(vertices, moved, triangles)
+
+
+def climbed(vertices: Complex, triangles: Ints, free: Bools, target: float = TARGET, rounds: int = ROUNDS, rings: int = 3) -> Complex:
+    """Relax with large powers, but only where the worst angles are, as long as these are less than `target` degrees."""
+    for _ in range(rounds):
+        angles = smallest_angles(vertices, triangles)
+        near = angles < min(target, angles.min(initial=target) + MARGIN)
+        if not near.any():
+            break
+        for _ in range(rings):
+            zone = np.zeros(len(vertices), bool)
+            zone[triangles[near]] = True
+            near = zone[triangles].any(axis=1)
+        vertices = relaxed(vertices, triangles[near], free & zone, CLIMB)
+    return vertices
+
+
+def _guarded(before: Complex, after: Complex, triangles: Ints, safe: float = 30.0) -> Complex:
+    """Put back the vertices of triangles that became bad: with an angle that fell below `safe` or below the worst before."""
+    angles = smallest_angles(before, triangles)
+    least = np.minimum(angles, max(safe, angles.min(initial=60.0)))
+    after = after.copy()
+    while True:
+        worse = smallest_angles(after, triangles) < least - 1e-9
+        back = np.unique(triangles[worse])
+        back = back[after[back] != before[back]]
+        if not len(back):
+            return after
+        after[back] = before[back]

@@ -1,0 +1,52 @@
+"""The conforming recipe on tiny difficult label maps: all promises, under rotation and mirroring."""
+
+from __future__ import annotations
+
+import numpy as np
+import oracles
+import pytest
+import specimens
+
+from img2tri.conforming import conform, trace_outlines
+from img2tri.raster.zones import Zones
+from img2tri.records import Frame
+
+
+def check(labels, *, background=0, edge_length=8.0):
+    outlines, links = trace_outlines(Zones(labels, background), Frame(labels.shape))
+    made = conform(outlines, links, edge_length=edge_length)
+    regions = outlines.labels[made.regions]
+    oracles.check_valid(made.vertices, made.triangles)
+    assert oracles.angles(made.vertices, made.triangles).min() >= 30 - 1e-6
+    oracles.check_faithful(made.vertices, made.triangles, regions, labels, background=background)
+    return made
+
+
+@pytest.mark.parametrize("name", specimens.ALL)
+def test_specimens_keep_all_promises(name):
+    for labels in specimens.turned(specimens.ALL[name]):
+        check(labels)
+
+
+@pytest.mark.parametrize("name", specimens.ALL)
+def test_specimens_without_background(name):
+    check(specimens.ALL[name], background=None)
+
+
+@pytest.mark.parametrize("density", [0.1, 0.3, 0.5, 0.7, 0.9])
+def test_noise(density):
+    labels = (np.random.default_rng(7).random((32, 32)) < density).astype(int)
+    check(labels)
+
+
+@pytest.mark.parametrize("count", [2, 3, 5, 8])
+def test_random_labels(count):
+    labels = np.random.default_rng(count).integers(0, count, (20, 20))
+    check(labels)
+    check(labels, background=None)
+
+
+@pytest.mark.parametrize("edge_length", [1.0, 2.5, 16.0, 100.0])
+def test_any_edge_length(edge_length):
+    check(specimens.disc(30, 12), edge_length=edge_length)
+    check(specimens.polycrystal(), edge_length=edge_length)

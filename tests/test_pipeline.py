@@ -1,0 +1,589 @@
+"""mesh_image: what it accepts, what each option changes, what it refuses and how it says so."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import oracles
+import pytest
+import specimens
+from PIL import Image
+
+import img2tri
+from img2tri import FileError, ImageError, Img2triError, ParameterError, mesh_image
+from img2tri.paper import structured_mesh
+from img2tri.pipeline import PAPER_THRESHOLD, RECIPES, SMOOTHINGS
+
+DATA = Path(__file__).parents[1] / "data"
+DISC = specimens.disc(40, 15).astype(bool)
+GRAINS = specimens.polycrystal(48, 6)
+Y, X = np.mgrid[:60, :80] + 0.5
+RAMP = np.where(np.hypot(X - 40, Y - 30) < 26, 100 + X, 0).astype(np.uint8)  # a disc whose gray grows to the right
+UNEVEN = (np.hypot(X - 30, Y - 25) < 20) & ~(np.hypot(X - 24, Y - 22) < 5)  # with a hole, and not its own mirror image
+COMB = specimens.MASKS["comb"].repeat(3, 0).repeat(3, 1)
+
+
+def same(a, b):
+    return all(np.array_equal(getattr(a, name), getattr(b, name)) for name in ("vertices", "triangles", "regions"))
+
+
+def area(mesh, region=None):
+    triangles = mesh.triangles if region is None else mesh.triangles[mesh.regions == region]
+    return oracles.areas(mesh.vertices, triangles).sum()
+
+
+def centroid(mesh):
+    a = oracles.areas(mesh.vertices, mesh.triangles)
+    return a @ mesh.vertices[mesh.triangles].mean(axis=1) / a.sum()
+
+
+def saved(values, path, **options):
+    Image.fromarray(np.asarray(values)).save(path, **options)
+    return path
+
+
+# ---- what is accepted ----
+
+MASK_AS = {
+    "bool": DISC,
+    "int64": DISC.astype(int),
+    "uint8": DISC.astype(np.uint8) * 255,
+    "uint16": DISC.astype(np.uint16) * 65535,
+    "float32": DISC.astype(np.float32),
+    "float64, negative": DISC * 3.5 - 1,
+    "RGB": np.dstack([DISC.astype(np.uint8) * 255] * 3),
+    "RGBA": np.dstack([DISC.astype(np.uint8) * 255] * 3 + [np.full(DISC.shape, 255, np.uint8)]),
+    "black on transparent": np.dstack([np.zeros_like(DISC, np.uint8)] * 3 + [DISC.astype(np.uint8) * 255]),
+    "in columns": np.asfortranarray(DISC),
+    "every second": DISC.repeat(2, 0).repeat(2, 1)[::2, ::2],
+    "big-endian": DISC.astype(">i4"),
+    "nested lists": DISC.tolist(),
+}
+
+
+@pytest.mark.parametrize("name", MASK_AS)
+def test_a_mask_is_the_same_in_any_type(name):
+    assert same(mesh_image(MASK_AS[name], edge_length=5), mesh_image(DISC, edge_length=5))
+
+
+@pytest.mark.parametrize("suffix", [".png", ".tif", ".bmp"])
+@pytest.mark.parametrize("kind", [str, Path])
+def test_a_file_is_its_array(suffix, kind, tmp_path):
+    path = saved(DISC.astype(np.uint8) * 255, tmp_path / f"disc{suffix}")
+    mesh = mesh_image(kind(path), edge_length=5)
+    assert same(mesh, mesh_image(DISC, edge_length=5))
+    assert mesh.origin.settings["source"] == str(path)
+
+
+def test_the_image_is_not_changed():
+    image = RAMP.copy()
+    mesh_image(image, edge_length=6)
+    assert (image == RAMP).all()
+    image.flags.writeable = False
+    mesh_image(image, edge_length=6, invert=True)
+
+
+def test_a_mesh_of_image_data_lies_on_the_object():
+    pyvista = pytest.importorskip("pyvista")
+    grid = pyvista.ImageData(dimensions=(81, 61, 1), spacing=(0.5, 0.5, 1), origin=(10, -20, 7))
+    grid.cell_data["mask"] = UNEVEN.reshape(-1).astype(np.uint8)
+    mesh = mesh_image(grid, edge_length="5px")
+    # Cell (i, j) is [10 + i / 2, ...] x [-20 + j / 2, ...]: y grows with the row of the array.
+    y, x = np.nonzero(UNEVEN)
+    expected = np.array([10 + (x.mean() + 0.5) / 2, -20 + (y.mean() + 0.5) / 2])
+    assert np.abs(centroid(mesh) - expected).max() < 0.05
+    assert (oracles.areas(mesh.vertices, mesh.triangles) > 0).all()
+    flat = mesh.to_pyvista()
+    assert flat.bounds[4:] == (7, 7)
+    # Every triangle lies on cells of the mask, but for those cut by the outline.
+    found = grid.find_containing_cell(flat.cell_centers().points)
+    assert (grid["mask"][found] == 1).mean() > 0.99
+
+
+def test_image_data_on_points_reach_half_a_pixel_further():
+    pyvista = pytest.importorskip("pyvista")
+    grid = pyvista.ImageData(dimensions=(30, 20, 1), spacing=(2, 2, 1), origin=(1, 1, 0))
+    grid.point_data["all"] = np.ones(600, np.uint8)
+    mesh = mesh_image(grid)
+    assert mesh.vertices.min(axis=0).tolist() == [0, 0]
+    assert mesh.vertices.max(axis=0).tolist() == [60, 40]
+
+
+# ---- what each option changes ----
+
+CHANGES = {
+    "recipe": (UNEVEN * 255, {"recipe": "conforming"}, {"recipe": "structured"}, {"recipe": "unstructured"}),
+    "threshold": (RAMP, {"threshold": 100}, {"threshold": 140}, {"threshold": "otsu"}),
+    "labels": (GRAINS, {"labels": True}, {"labels": [1, 2]}, {"labels": [3]}),
+    "background": (GRAINS, {"labels": True}, {"labels": True, "background": 3}),
+    "invert": (UNEVEN, {}, {"invert": True}),
+    "connectivity": (specimens.MASKS["touching corners inside"], {}, {"connectivity": 8}),
+    "edge_length": (UNEVEN, {"edge_length": 4}, {"edge_length": 8}, {"edge_length": "2%"}),
+    "min_angle": (COMB, {"min_angle": 0, "edge_length": 9}, {"min_angle": 33, "edge_length": 9}),
+    "tolerance": (UNEVEN, {"tolerance": "0.1px", "edge_length": 12}, {"tolerance": "1px", "edge_length": 12}),
+    "smoothing": (UNEVEN, {"smoothing": "none"}, {"smoothing": "uniform"}, {"smoothing": "cotangent"}),
+    "iterations": (UNEVEN, {"smoothing": "uniform", "iterations": 1}, {"smoothing": "uniform", "iterations": 5}),
+    "spacing": (UNEVEN, {"edge_length": "6px"}, {"edge_length": "6px", "spacing": 2}, {"edge_length": "6px", "spacing": (1, 2)}),
+    "origin": (UNEVEN, {}, {"origin": "upper"}, {"origin": (5, -3)}),
+    "seed": (UNEVEN * 255, {"recipe": "unstructured"}, {"recipe": "unstructured", "seed": 1}),
+    "step": (UNEVEN * 255, {"recipe": "structured"}, {"recipe": "structured", "step": 7}),
+    "n_boundary_points": (UNEVEN * 255, {"recipe": "unstructured"}, {"recipe": "unstructured", "n_boundary_points": 20}),
+    "n_interior_points": (UNEVEN * 255, {"recipe": "unstructured"}, {"recipe": "unstructured", "n_interior_points": 5}),
+    "min_distance": (UNEVEN * 255, {"recipe": "unstructured"}, {"recipe": "unstructured", "min_distance": 8}),
+    "min_distance_to_boundary": (UNEVEN * 255, {"recipe": "unstructured"}, {"recipe": "unstructured", "min_distance_to_boundary": 8}),
+}
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_an_option_changes_the_mesh(name):
+    image, *options = CHANGES[name]
+    meshes = [mesh_image(image, **o) for o in options]
+    assert not any(same(a, b) for i, a in enumerate(meshes) for b in meshes[:i])
+
+
+@pytest.mark.parametrize("threshold", [99, 120, 140.5])
+def test_threshold_strictly_greater_is_white(threshold):
+    mesh = mesh_image(RAMP, threshold=threshold, edge_length=4)
+    assert mesh.report.areas[1]["image"] == (RAMP > threshold).sum()
+    assert abs(area(mesh) / (RAMP > threshold).sum() - 1) < 0.01
+    assert mesh.origin.settings["threshold"] == threshold
+    assert mesh.origin.settings["threshold_from"] == "given"
+
+
+def test_threshold_left_out_is_chosen_and_told():
+    assert mesh_image(DISC).origin.settings["threshold_from"] == "mask"
+    two = mesh_image(DISC * 100.0 + 50).report.settings
+    assert (two["threshold"], two["threshold_from"]) == (100, "middle")
+    many = mesh_image(RAMP)
+    assert many.report.settings["threshold_from"] == "otsu"
+    assert same(many, mesh_image(RAMP, threshold="otsu"))
+    assert same(many, mesh_image(RAMP, threshold=many.report.settings["threshold"]))
+
+
+@pytest.mark.parametrize("recipe", ["structured", "unstructured"])
+def test_threshold_of_the_paper_is_240(recipe):
+    image = np.where(DISC, 241, np.where(specimens.disc(40, 18), 240, 0)).astype(np.uint8)
+    mesh = mesh_image(image, recipe=recipe, edge_length=4)
+    assert PAPER_THRESHOLD == 240
+    assert mesh.report.settings["threshold"] == 240
+    assert mesh.report.areas[1]["image"] == DISC.sum()
+    assert same(mesh, mesh_image(image, recipe=recipe, edge_length=4, threshold=240))
+
+
+@pytest.mark.parametrize("background", [None, 0, 3])
+def test_labels_make_a_conforming_mesh_of_all_regions(background):
+    grains = np.where(GRAINS == 5, 0, GRAINS) * 10
+    mesh = mesh_image(grains, labels=True, background=background and background * 10, edge_length=5)
+    back = background and background * 10
+    assert set(mesh.regions.tolist()) == set(np.unique(grains).tolist()) - {back}
+    oracles.check_valid(mesh.vertices, mesh.triangles)
+    oracles.check_faithful(mesh.vertices, mesh.triangles, mesh.regions, grains, background=back)
+    assert mesh.report.kept
+
+
+def test_a_list_of_labels_leaves_the_others_out():
+    mesh = mesh_image(GRAINS, labels=[2, 4], edge_length=4)
+    kept = np.where(np.isin(GRAINS, [2, 4]), GRAINS, 0)
+    oracles.check_faithful(mesh.vertices, mesh.triangles, mesh.regions, kept)
+    assert same(mesh, mesh_image(GRAINS, labels=(4, 2, 4), edge_length=4))
+    assert mesh.report.settings["labels"] == [2, 4]
+
+
+def test_one_white_zone_is_region_1():
+    assert set(mesh_image(DISC * 200.0).regions.tolist()) == {1}
+
+
+def test_invert_meshes_the_rest():
+    white, dark = mesh_image(UNEVEN, edge_length=4), mesh_image(UNEVEN, edge_length=4, invert=True)
+    assert white.report.areas[1]["image"] + dark.report.areas[1]["image"] == UNEVEN.size
+    assert abs(area(white) + area(dark) - UNEVEN.size) < 0.01 * UNEVEN.size
+    oracles.check_faithful(dark.vertices, dark.triangles, dark.regions, (~UNEVEN).astype(int))
+
+
+def test_connectivity_joins_pixels_at_their_corners():
+    corners = specimens.MASKS["touching corners inside"]
+    for connectivity in (4, 8):
+        mesh = mesh_image(corners, connectivity=connectivity)
+        assert oracles.mesh_topology(mesh.triangles) == oracles.pixel_topology(corners == 1, connectivity)
+        assert mesh.report.kept
+
+
+def test_edge_length_is_the_length_of_edges():
+    for wanted in (3.0, 6.0):
+        mesh = mesh_image(np.ones((60, 80)), edge_length=wanted)
+        edges = mesh.vertices[oracles.edge_counts(mesh.triangles)[0]]
+        assert np.linalg.norm(edges[:, 1] - edges[:, 0], axis=1).mean() == pytest.approx(wanted, rel=0.15)
+
+
+def test_edge_length_in_pixels_in_percent_and_in_world_units():
+    image = np.zeros((30, 40), bool)
+    image[5:25, 5:35] = True
+    wanted = mesh_image(image, spacing=0.5, edge_length=2)
+    assert same(wanted, mesh_image(image, spacing=0.5, edge_length="4px"))
+    assert same(wanted, mesh_image(image, spacing=0.5, edge_length="8%"))
+    assert wanted.report.settings["edge_length"] == 2
+
+
+def test_edge_length_left_out_follows_the_area_and_is_told():
+    small, large = mesh_image(DISC), mesh_image(DISC.repeat(8, 0).repeat(8, 1))
+    assert small.report.settings["edge_length"] == 4
+    assert large.report.settings["edge_length"] > 4
+    assert 1000 < len(large.triangles) < 4000
+
+
+@pytest.mark.parametrize("min_angle", [0, 20, 30, 33])
+def test_min_angle_is_kept(min_angle):
+    mesh = mesh_image(COMB, min_angle=min_angle, edge_length=9)
+    assert oracles.angles(mesh.vertices, mesh.triangles).min() >= min_angle - 1e-6
+    assert mesh.report.min_angle == min_angle
+    assert mesh.report.kept
+
+
+@pytest.mark.parametrize("tolerance", ["0.1px", "0.5px", 2])
+def test_tolerance_is_kept(tolerance):
+    mesh = mesh_image(UNEVEN, tolerance=tolerance, edge_length=15)
+    limit = mesh.frame.length("tolerance", tolerance)
+    assert mesh.report.tolerance == limit
+    assert mesh.report.hausdorff <= limit
+    assert mesh.report.kept
+
+
+def test_smoothing_left_out_is_what_the_recipe_does():
+    white = UNEVEN * 255
+    assert same(mesh_image(white), mesh_image(white, smoothing="none"))
+    structured = {"recipe": "structured", "edge_length": 6}
+    assert same(mesh_image(white, **structured), mesh_image(white, **structured, smoothing="none"))
+    paper = {"recipe": "unstructured", "edge_length": 6}
+    assert same(mesh_image(white, **paper), mesh_image(white, **paper, smoothing="uniform", iterations=10))
+    assert not same(mesh_image(white, **paper), mesh_image(white, **paper, smoothing="none"))
+
+
+@pytest.mark.parametrize("smoothing", ["uniform", "cotangent"])
+def test_smoothing_keeps_the_promises_of_the_default_recipe(smoothing):
+    mesh = mesh_image(UNEVEN, smoothing=smoothing, edge_length=5)
+    assert (oracles.areas(mesh.vertices, mesh.triangles) > 0).all()
+    assert mesh.report.topology[1]["found"] == mesh.report.topology[1]["expected"]
+    assert mesh.report.narrow == 0
+
+
+@pytest.mark.parametrize("spacing", [0.25, 2.0, 0.7, 1e-3, 1234.5])
+@pytest.mark.parametrize("image", [UNEVEN, GRAINS], ids=["mask", "labels"])
+def test_a_mesh_scales_exactly_with_spacing(image, spacing):
+    options = {"labels": True if image is GRAINS else None, "edge_length": "5px"}
+    one, scaled = mesh_image(image, **options), mesh_image(image, spacing=spacing, **options)
+    assert np.array_equal(scaled.vertices, spacing * one.vertices)
+    assert np.array_equal(scaled.triangles, one.triangles)
+    assert scaled.report.hausdorff == pytest.approx(spacing * one.report.hausdorff)
+    assert scaled.report.areas[1]["image"] == pytest.approx(spacing**2 * one.report.areas[1]["image"])
+
+
+def test_pixels_need_not_be_square():
+    mesh = mesh_image(np.ones((20, 30), bool), spacing=(0.5, 0.7), edge_length=1)
+    assert mesh.vertices.min(axis=0).tolist() == [0, 0]
+    assert mesh.vertices.max(axis=0) == pytest.approx([15, 14], rel=1e-15)
+    assert mesh.report.kept
+    assert area(mesh) == pytest.approx(15 * 14, rel=1e-12)
+
+
+def test_origin_is_the_place_of_the_corner():
+    lower = mesh_image(UNEVEN, edge_length=5)
+    moved = mesh_image(UNEVEN, edge_length=5, origin=(100, -7.5))
+    assert np.array_equal(moved.vertices, lower.vertices + [100, -7.5])
+    y, x = np.nonzero(UNEVEN)
+    assert np.abs(centroid(lower) - [x.mean() + 0.5, 60 - y.mean() - 0.5]).max() < 0.05
+
+
+def test_origin_upper_gives_image_coordinates():
+    upper = mesh_image(UNEVEN, edge_length=5, origin="upper", spacing=0.5)
+    y, x = np.nonzero(UNEVEN)
+    assert np.abs(centroid(upper) - [(x.mean() + 0.5) / 2, (y.mean() + 0.5) / 2]).max() < 0.05
+    assert (oracles.areas(upper.vertices, upper.triangles) > 0).all()
+    assert upper.report.kept
+
+
+def test_page_is_the_image_of_a_file(tmp_path):
+    first, second = (Image.fromarray(specimens.disc(40, r).astype(np.uint8) * 255) for r in (8, 15))
+    path = tmp_path / "pages.tif"
+    first.save(path, save_all=True, append_images=[second])
+    assert mesh_image(path).report.areas[1]["image"] == specimens.disc(40, 8).sum()
+    assert mesh_image(path, page=1).report.areas[1]["image"] == specimens.disc(40, 15).sum()
+
+
+def test_spacing_from_the_file(tmp_path):
+    path = saved(DISC.astype(np.uint8) * 255, tmp_path / "disc.png", dpi=(254, 254))
+    assert mesh_image(path).frame.spacing == (1, 1)
+    assert mesh_image(path, spacing="file").frame.spacing == pytest.approx((0.1, 0.1), rel=1e-3)
+
+
+def test_names_are_kept_with_the_mesh():
+    names = {1: "bone", 2: "marrow"}
+    mesh = mesh_image(GRAINS, labels=[1, 2], names=names)
+    assert mesh.names == names
+    assert mesh.smoothed().names == names
+    assert mesh_image(DISC).names == {}
+
+
+@pytest.mark.parametrize("recipe", RECIPES)
+def test_progress_tells_the_stages_in_order(recipe):
+    told = []
+    mesh_image(UNEVEN * 255, recipe=recipe, progress=lambda stage, fraction: told.append((stage, fraction)))
+    stages, fractions = zip(*told, strict=True)
+    assert told[0] == ("reading", 0)
+    assert told[-1] == ("done", 1)
+    assert list(fractions) == sorted(fractions)
+    assert {"reading", "labels", "outlines", "smoothing", "done"} <= set(stages)
+
+
+@pytest.mark.parametrize("stage", ["reading", "labels", "outlines", "triangles", "smoothing"])
+def test_raising_in_progress_cancels(stage):
+    class Cancelled(Exception):  # noqa: N818
+        pass
+
+    told = []
+
+    def progress(now, _):
+        told.append(now)
+        if now == stage:
+            raise Cancelled
+
+    with pytest.raises(Cancelled):
+        mesh_image(UNEVEN, progress=progress)
+    assert told[-1] == stage
+
+
+# ---- the paper's recipes ----
+
+
+def test_structured_is_the_stage_of_that_name():
+    white = UNEVEN.astype(np.uint8) * 255
+    mesh, alone = mesh_image(white, recipe="structured", step=7), structured_mesh(UNEVEN, step=7)
+    column, row = alone.points.T
+    assert np.array_equal(mesh.vertices, np.stack([column + 0.5, 60 - row - 0.5], axis=1))
+    assert len(mesh.triangles) == len(alone.triangles)
+    assert mesh.report.counted["grid_points"] == alone.counted["grid_points"]
+    assert set(np.round((mesh.vertices - mesh.vertices.min(axis=0)) % 7, 9).ravel().tolist()) == {0}
+
+
+def test_the_paper_fills_holes_and_the_report_says_so():
+    for recipe in ("structured", "unstructured"):
+        mesh = mesh_image(UNEVEN * 255, recipe=recipe, edge_length=4)
+        assert mesh.report.recipe == recipe
+        assert mesh.report.topology[1] == {"found": (1, 0), "expected": (1, 1)}
+        assert any("expected 1 with 1" in line for line in mesh.report.warnings)
+        assert mesh.report.wrong_pixels > 0
+        assert mesh.report.tolerance is None
+        assert mesh.report.min_angle is None
+        assert (oracles.areas(mesh.vertices, mesh.triangles) > 0).all()
+
+
+def test_unstructured_has_the_points_that_are_wanted():
+    options = {"recipe": "unstructured", "n_boundary_points": 30, "n_interior_points": 12, "min_distance": 3, "min_distance_to_boundary": 2}
+    mesh = mesh_image(DISC * 255, **options)
+    assert mesh.report.counted["boundary_points"] == [30]
+    assert mesh.report.counted["interior_points"] == [12]
+    assert len(oracles.boundary(mesh.triangles)) == 30
+    assert len(mesh.vertices) == 42
+    assert {name: mesh.report.settings[name] for name in options if name != "recipe"} == {k: v for k, v in options.items() if k != "recipe"}
+
+
+def test_lengths_of_the_paper_have_units_too():
+    white = UNEVEN * 255
+    one = mesh_image(white, recipe="structured", step=5)
+    assert same(one, mesh_image(white, recipe="structured", step="5px"))
+    assert same(one, mesh_image(white, recipe="structured", step="5%"))  # the diagonal is 100
+    half = mesh_image(white, recipe="structured", step="5px", spacing=0.5)
+    assert np.array_equal(half.vertices, one.vertices / 2)
+
+
+def test_edge_length_is_the_step_of_the_paper_if_there_is_none():
+    white = UNEVEN * 255
+    assert same(mesh_image(white, recipe="structured", edge_length=6), mesh_image(white, recipe="structured", step=6))
+
+
+@pytest.mark.parametrize("recipe", ["structured", "unstructured"])
+def test_the_paper_on_labels(recipe):
+    mesh = mesh_image(GRAINS, recipe=recipe, labels=True, edge_length=3)
+    assert set(mesh.regions.tolist()) <= set(range(1, 7))
+    assert len(set(mesh.regions.tolist())) > 4
+
+
+# ---- the images of the project ----
+
+
+@pytest.mark.skipif(not DATA.is_dir(), reason="the images are in the checkout only")
+@pytest.mark.parametrize("name", sorted(p.name for p in DATA.glob("*.png")) if DATA.is_dir() else [])
+def test_the_images_of_the_project_keep_every_promise(name):
+    labels = np.asarray(Image.open(DATA / name))
+    mesh = mesh_image(DATA / name, labels=True if name == "polycrystal.png" else None)
+    assert mesh.report.kept, mesh.report.warnings
+    oracles.check_valid(mesh.vertices, mesh.triangles)
+    assert all(abs(row["error"]) < 0.01 for row in mesh.report.areas.values())
+    if name == "polycrystal.png":
+        oracles.check_faithful(mesh.vertices, mesh.triangles, mesh.regions, labels.astype(int), background=0)
+
+
+# ---- same input, same mesh ----
+
+
+def digest(mesh):
+    return hashlib.sha256(b"".join(a.tobytes() for a in (mesh.vertices, mesh.triangles, mesh.regions))).hexdigest()
+
+
+@pytest.mark.parametrize("recipe", RECIPES)
+def test_same_input_same_mesh(recipe):
+    options = {"recipe": recipe, "edge_length": 4, "smoothing": "uniform"}
+    here = digest(mesh_image(UNEVEN * 255, **options))
+    assert digest(mesh_image(UNEVEN * 255, **options)) == here
+    code = f"import test_pipeline as t; print(t.digest(t.mesh_image(t.UNEVEN * 255, **{options!r})))"
+    path = os.pathsep.join([str(Path(__file__).parent), str(Path(img2tri.__file__).parents[1])])
+    env = os.environ | {"PYTHONPATH": path, "PYTHONHASHSEED": "7"}
+    there = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=env).stdout.strip()
+    assert there == here
+
+
+def test_labels_too():
+    assert digest(mesh_image(GRAINS, labels=True)) == digest(mesh_image(GRAINS.copy(), labels=True))
+
+
+# ---- bad input ----
+
+MANY = np.arange(12).reshape(3, 4)
+REFUSED = {
+    "zero rows": (np.zeros((0, 5)), {}, ImageError, "image: expected at least one pixel, found shape (0, 5)"),
+    "one dimension": (np.ones(5), {}, ImageError, "image: expected shape (h, w), or (h, w, 3 or 4) with colours, found (5,)"),
+    "a stack": (np.ones((5, 6, 7)), {}, ImageError, "found (5, 6, 7); pick one image of a stack"),
+    "two channels": (np.ones((5, 6, 2)), {}, ImageError, "found (5, 6, 2)"),
+    "text": (np.array([["a"]]), {}, ImageError, "image: expected an array of bool, integer or floating point values"),
+    "complex": (np.ones((3, 3), complex), {}, ImageError, "found an array of type complex128"),
+    "nothing": (None, {}, ImageError, "image: expected an array"),
+    "NaN": (np.full((3, 3), np.nan), {}, ImageError, "image: expected finite values, found 9 NaN or infinite"),
+    "infinite": (np.array([[1, np.inf]]), {}, ImageError, "image: expected finite values, found 1 NaN or infinite"),
+    "black": (np.zeros((9, 9), bool), {}, ImageError, "image: expected pixels to mesh, found none"),
+    "black, gray": (np.zeros((9, 9), np.uint8), {}, ImageError, "image: expected pixels to mesh, found none above the threshold 0"),
+    "all background": (np.full((9, 9), 3), {"labels": True, "background": 3}, ImageError, "image: expected pixels to mesh, found none"),
+    "white, inverted": (np.ones((9, 9), bool), {"invert": True}, ImageError, "image: expected pixels to mesh, found none"),
+    "too dark": (DISC * 200, {"threshold": 240}, ImageError, "found none above the threshold 240; try another threshold, or invert"),
+    "too dark for the paper": (DISC * 200, {"recipe": "structured"}, ImageError, "none above the threshold 240"),
+    "one value": (np.ones((9, 9), np.uint8), {"threshold": "otsu"}, ImageError, "threshold: 'otsu' expected at least two values"),
+    "labels not said": (MANY, {}, ImageError, "labels=True makes each value a region of its own"),
+    "labels not whole": (np.array([[0.5, 1]]), {"labels": True}, ImageError, "labels: expected whole numbers, found 0.5"),
+    "label not there": (MANY, {"labels": [1, 99]}, ImageError, "labels: expected values of the image, found 99"),
+    "no labels": (MANY, {"labels": []}, ParameterError, "labels: expected True or a list of integers, found []"),
+    "one label": (MANY, {"labels": 3}, ParameterError, "labels: expected True or a list of integers, found 3"),
+    "background in labels": (MANY, {"labels": [0, 1]}, ParameterError, "give background=None to mesh it too"),
+    "threshold with labels": (MANY, {"labels": True, "threshold": 3}, ParameterError, "threshold: expected to be left out"),
+    "invert with labels": (MANY, {"labels": True, "invert": True}, ParameterError, "invert: expected to be left out"),
+    "background": (MANY, {"labels": True, "background": 0.5}, ParameterError, "background: expected an integer or None, found 0.5"),
+    "recipe": (DISC, {"recipe": "magic"}, ParameterError, "recipe: expected one of 'conforming', 'structured', 'unstructured', found 'magic'"),
+    "threshold": (DISC * 1.0, {"threshold": "high"}, ParameterError, "threshold: expected a number, 'otsu' or None, found 'high'"),
+    "threshold NaN": (DISC * 1.0, {"threshold": np.nan}, ParameterError, "threshold: expected a number, found nan"),
+    "connectivity": (DISC, {"connectivity": 6}, ParameterError, "connectivity: expected 4 or 8, found 6"),
+    "smoothing": (DISC, {"smoothing": "soft"}, ParameterError, "smoothing: expected one of 'none', 'uniform', 'cotangent', found 'soft'"),
+    "iterations": (DISC, {"iterations": 1.5}, ParameterError, "iterations: expected a whole number of at least 0, found 1.5"),
+    "seed": (DISC, {"seed": -1}, ParameterError, "seed: expected a whole number of at least 0, found -1"),
+    "page": (DISC, {"page": 1}, ParameterError, "page: expected 0 for an array"),
+    "max_pixels": (DISC, {"max_pixels": 0}, ParameterError, "max_pixels: expected a whole number of at least 1, found 0"),
+    "min_angle below": (DISC, {"min_angle": -1}, ParameterError, "min_angle: expected a number of at least 0 and of at most 33, found -1"),
+    "min_angle above": (DISC, {"min_angle": 40}, ParameterError, "min_angle: expected a number of at least 0 and of at most 33, found 40"),
+    "tolerance": (DISC, {"tolerance": 0}, ParameterError, "tolerance: expected a number above 0, found 0"),
+    "tolerance unit": (DISC, {"tolerance": "1mm"}, ParameterError, "tolerance: expected a number with a unit, like 8, '8px' or '2%', found '1mm'"),
+    "spacing pair": (DISC, {"spacing": (1, 2, 3)}, ParameterError, "spacing: expected a pair of numbers, found 3"),
+    "spacing word": (DISC, {"spacing": "mm"}, ParameterError, "spacing: expected a number, a pair (dx, dy), 'file' or None, found 'mm'"),
+    "spacing of an array": (DISC, {"spacing": "file"}, ParameterError, "spacing: 'file' expected a resolution"),
+    "origin": (DISC, {"origin": "middle"}, ParameterError, "origin: expected 'lower', 'upper' or a pair (x, y), found 'middle'"),
+    "origin NaN": (DISC, {"origin": (0, np.nan)}, ParameterError, "origin: expected a number, found nan"),
+    "step": (DISC * 255, {"recipe": "structured", "step": 0}, ParameterError, "step: expected a number above 0, found 0"),
+    "step too large": (DISC * 255, {"recipe": "structured", "step": 100}, ImageError, "step 100"),
+    "n_boundary_points": (
+        DISC * 255,
+        {"recipe": "unstructured", "n_boundary_points": 2},
+        ParameterError,
+        "n_boundary_points: expected a whole number of at least 3, found 2",
+    ),
+    "n_interior_points": (
+        DISC * 255,
+        {"recipe": "unstructured", "n_interior_points": -1},
+        ParameterError,
+        "n_interior_points: expected a whole number of at least 0, found -1",
+    ),
+    "min_distance": (
+        DISC * 255,
+        {"recipe": "unstructured", "min_distance": -1},
+        ParameterError,
+        "min_distance: expected a number of at least 0, found -1",
+    ),
+    "min_distance_to_boundary": (
+        DISC * 255,
+        {"recipe": "unstructured", "min_distance_to_boundary": np.nan},
+        ParameterError,
+        "min_distance_to_boundary: expected a number of at least 0, found nan",
+    ),
+    "option of another recipe": (DISC, {"step": 5}, ParameterError, "step"),
+    "option unknown": (DISC, {"edge_lenght": 5}, TypeError, "edge_lenght"),
+    **{
+        f"{name} {value}": (DISC, {name: value}, ParameterError, f"{name}: expected a number above 0, found {value}")
+        for name in ("edge_length", "spacing", "tolerance")
+        for value in (-8, 0, 0.0, np.nan, np.inf)
+    },
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_bad_input_is_refused_with_its_own_words(case):
+    image, options, error, words = REFUSED[case]
+    with pytest.raises(error) as refused:
+        mesh_image(image, **options)
+    assert words in str(refused.value)
+    if error is not TypeError:
+        assert isinstance(refused.value, Img2triError)
+        assert isinstance(refused.value, OSError if error is FileError else ValueError)
+
+
+def files(folder):
+    noise = np.random.default_rng(0).integers(0, 256, (64, 64), np.uint8)
+    for suffix in (".png", ".jpg", ".tif"):
+        data = saved(noise, folder / f"whole{suffix}").read_bytes()
+        (folder / f"cut{suffix}").write_bytes(data[: len(data) // 2])
+    (folder / "text.png").write_text("not an image")
+    (folder / "empty.png").write_bytes(b"")
+    (folder / "folder.png").mkdir()
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("none.png", "there is no file"),
+        ("folder.png", "found the folder"),
+        ("text.png", "is not an image in a known format"),
+        ("empty.png", "is empty"),
+        ("cut.png", "is damaged or truncated"),
+        ("cut.jpg", "is damaged or truncated"),
+        ("cut.tif", "is damaged or truncated"),
+    ],
+)
+def test_a_bad_file_is_refused_by_name(name, words, tmp_path):
+    files(tmp_path)
+    with pytest.raises(FileError) as refused:
+        mesh_image(tmp_path / name)
+    assert isinstance(refused.value, OSError)
+    assert words in str(refused.value)
+    assert name in str(refused.value)
+
+
+def test_a_file_of_too_many_pixels_is_refused(tmp_path):
+    path = saved(DISC.astype(np.uint8) * 255, tmp_path / "disc.png")
+    mesh_image(path, max_pixels=1600)
+    with pytest.raises(ImageError, match="at most max_pixels=1599 pixels, found 40 x 40"):
+        mesh_image(path, max_pixels=1599)
+
+
+def test_every_error_is_one_sentence_of_its_own():
+    assert len({words for *_, words in REFUSED.values()}) > 40
+    assert issubclass(FileError, OSError)
+    assert issubclass(ParameterError, ValueError)
+    assert set(SMOOTHINGS) == {"none", "uniform", "cotangent"}
