@@ -13,11 +13,12 @@ import numpy as np
 
 from img2tri.raster.zones import Zones
 from img2tri.records import Floats, Frame, Ints, Made, Outlines
-from img2tri.shapes.coarsening import draft, keep_areas, refine, settle
+from img2tri.shapes.coarsening import area_error, draft, keep_areas, refine, settle
 from img2tri.shapes.cracks import find_cracks
 from img2tri.shapes.links import Links
 from img2tri.shapes.placing import place, place_on_sides
 
+AREA_ROUNDS, AREA_ERROR = 4, 1e-4  # how often breaks are moved for the sake of areas, and the relative error that is left
 ATTEMPTS = 12  # rounds of refining the outlines; two are the most that ordinary images take
 
 
@@ -63,7 +64,9 @@ def conform(
 
     progress("spacing", 0.3)
     coarse = settle(draft(outlines, links, spacing=edge_length, keep_corners=corners == "keep"), tolerance=tolerance)
-    if keep_area:
+    for _ in range(AREA_ROUNDS if keep_area else 0):
+        if area_error(coarse) <= AREA_ERROR:
+            break
         coarse = settle(keep_areas(coarse, tolerance=tolerance), tolerance=tolerance)
     for attempt in range(ATTEMPTS):
         progress("triangles", 1 - 0.6 * 0.7**attempt)

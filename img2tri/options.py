@@ -6,7 +6,7 @@ Only what makes a text a number, a pair or a list is checked here; what values m
 from __future__ import annotations
 
 import re
-from argparse import SUPPRESS, ArgumentParser, ArgumentTypeError, Namespace, RawDescriptionHelpFormatter
+from argparse import SUPPRESS, ArgumentParser, ArgumentTypeError, BooleanOptionalAction, Namespace, RawDescriptionHelpFormatter
 from collections.abc import Sequence
 from typing import NoReturn
 
@@ -15,7 +15,7 @@ from img2tri import __version__
 # Options that go on to mesh_image, by its own names. Those not given are not in the namespace.
 MESH_OPTIONS = (
     "recipe", "threshold", "labels", "background", "invert", "connectivity", "outline", "corners", "edge_length", "min_angle",
-    "tolerance", "smoothing", "iterations", "spacing", "origin", "page", "max_pixels", "names", "seed",
+    "tolerance", "keep_area", "smoothing", "iterations", "spacing", "origin", "page", "max_pixels", "names", "seed",
     "step", "n_boundary_points", "n_interior_points", "min_distance", "min_distance_to_boundary",
 )  # fmt: skip
 
@@ -148,6 +148,8 @@ def _add_mesh_options(parser: ArgumentParser) -> None:
     add("--edge-length", metavar="L", help="wanted length of edges (default: some 2000 triangles, at least 4px)")
     add("--min-angle", type=_number, metavar="A", help="least angle of a triangle, 0 to 33 degrees (default 30)")
     add("--tolerance", metavar="L", help="greatest distance between outlines and mesh (default 0.5px)")
+    add("--keep-area", action=BooleanOptionalAction, help="move vertices outwards on curved outlines, so that areas are kept, or leave "
+        "them on the outlines (default --keep-area)")  # fmt: skip
     add("--smoothing", metavar="S", help="none, uniform or cotangent (default none; uniform for unstructured)")
     add("--iterations", type=_whole, metavar="N", help="passes of smoothing (default 10)")
 

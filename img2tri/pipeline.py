@@ -169,8 +169,10 @@ def mesh_image(
     within = frame.length("tolerance", tolerance) / frame.pixel
     length = _edge_length(edge_length, pixel_areas(links), frame)
     if recipe == "conforming":
+        # Smoothing with a free boundary gets half of what outlines and mesh may differ by.
+        spent = within / 2 if smoothing == "cotangent" else within
         made = conform(
-            outlines, links, edge_length=length, tolerance=within, min_angle=min_angle, corners=corners,
+            outlines, links, edge_length=length, tolerance=spent, min_angle=min_angle, corners=corners,
             keep_area=keep_area, seed=seed, progress=tell,
         )  # fmt: skip
     else:
@@ -212,7 +214,7 @@ def mesh_image(
 
     tell("smoothing", 0.9)
     if smoothing == "cotangent":
-        mesh = mesh.smoothed("cotangent", iterations=iterations, boundary="free", tolerance=tolerance)
+        mesh = mesh.smoothed("cotangent", iterations=iterations, boundary="free", tolerance=within / 2 * frame.pixel)
     elif smoothing == "uniform" and recipe == "conforming":
         mesh = mesh.smoothed("uniform", iterations=iterations)
     tell("done", 1.0)

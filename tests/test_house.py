@@ -73,7 +73,8 @@ def at_the_top(module):
     waiting = list(module.body)
     while waiting:
         node = waiting.pop()
-        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) or (isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test)):
+        for_types = isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
+        if for_types or isinstance(node, ast.FunctionDef):
             continue
         yield node
         waiting += [child for child in ast.iter_child_nodes(node) if isinstance(child, ast.stmt)]

@@ -164,7 +164,7 @@ def test_a_flat_mesh_is_a_fixed_point_of_cotangent_smoothing(holed):
     assert np.abs(holed.smoothed("cotangent", iterations=20).vertices - holed.vertices).max() < 1e-9
 
 
-def test_a_free_boundary_is_rounded_within_the_tolerance(holed):
+def test_a_free_boundary_is_rounded_within_the_tolerance():
     pixel = mesh_image(HOLED, edge_length=2, outline="pixel")
     for tolerance in (0.1, "0.4px"):
         after = pixel.smoothed("cotangent", boundary="free", tolerance=tolerance, iterations=20)
@@ -379,5 +379,5 @@ def test_colour_by_changes_the_figure(grains, tmp_path):
 
 
 def test_a_figure_of_unknown_kind_is_refused(holed, tmp_path):
-    with pytest.raises(FileError, match="expected a name that ends in .pdf, .png or .svg"):
+    with pytest.raises(FileError, match=r"expected a name that ends in \.pdf, \.png or \.svg"):
         holed.plot(None, tmp_path / "a.stl")

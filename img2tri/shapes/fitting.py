@@ -57,7 +57,7 @@ def widest_fit(s: Sliding) -> Floats:
     shift, level = np.zeros((len(SCALES) + 1, len(s.points))), np.zeros(len(s.points), np.int64)
     size = np.diff(s.starts)
     for k, scale in enumerate(SCALES, start=1):
-        long = size > 3 * scale
+        long = size > 6 * scale
         if not long.any():
             break
         kernel = unshrinking(scale)
@@ -89,7 +89,7 @@ def _blend(shift: Floats, level: Ints, s: Sliding) -> Floats:
     return np.clip(result, s.low, s.high)
 
 
-def keep_areas(s: Sliding, shift: Floats, wanted: Floats, *, rounds: int = 3) -> Floats:
+def keep_areas(s: Sliding, shift: Floats, wanted: Floats, *, rounds: int = 4) -> Floats:
     """Shift each chain sideways until it sweeps the `wanted` area (c,), seen from the origin; return the new shifts."""
     at, chain = s.indices, s.chain
     ring_start, ring_end = s.starts[:-1][s.rings], s.starts[1:][s.rings] - 1
@@ -106,7 +106,7 @@ def keep_areas(s: Sliding, shift: Floats, wanted: Floats, *, rounds: int = 3) ->
         missing = wanted - swept(moved, s)
         step = np.divide(missing, gain, out=np.zeros_like(gain), where=gain > 0.1)
         move = np.zeros_like(shift)
-        move[at[free]] = (np.clip(step, -0.1, 0.1)[chain] * np.sign(width))[free]
+        move[at[free]] = (np.clip(step, -0.25, 0.25)[chain] * np.sign(width))[free]
         shift = np.clip(shift + move, s.low, s.high)
     return shift
 

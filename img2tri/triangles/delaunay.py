@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pythoncdt
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
@@ -77,6 +77,7 @@ def triangulate(points: Floats, segments: Ints, left: Ints, right: Ints) -> tupl
     >>> len(triangles), regions
     (4, array([7, 7, 7, 7]))
     """
+    check_network(points, segments, left, right)
     triangulation = _insert(points, segments)
     triangles, regions = _label(triangulation, len(points), segments, left, right)
     inside = np.flatnonzero(regions)
@@ -125,6 +126,7 @@ def refine(points: Floats, segments: Ints, left: Ints, right: Ints, min_angle: f
     -----
     J. Ruppert, A Delaunay refinement algorithm for quality 2-dimensional mesh generation, J. Algorithms 18, 1995.
     """
+    check_network(points, segments, left, right)
     triangulation = _insert(points, segments)
     _, regions = _label(triangulation, len(points), segments, left, right)
     outside = set(np.flatnonzero(regions == 0).tolist())
@@ -139,13 +141,22 @@ def refine(points: Floats, segments: Ints, left: Ints, right: Ints, min_angle: f
     return Refined(vertices, triangles[inside], regions[inside], pieces, whole)
 
 
-def _insert(points: Floats, segments: Ints) -> pythoncdt.Triangulation:
-    """Check what pythoncdt does not, and triangulate; its outer triangles and holes are still there."""
-    points = np.ascontiguousarray(points, np.float64)
-    if not np.isfinite(points).all():
-        raise NetworkError("points: expected finite coordinates, found NaN or infinity")
+def check_network(points: Floats, segments: Ints, left: Ints, right: Ints) -> None:
+    """Check what can be told of a network without triangulating it: shapes, finite coordinates, indices, segments of no length."""
+    if points.ndim != 2 or points.shape[1] != 2 or not np.isfinite(points).all():
+        raise NetworkError(f"points: expected finite coordinates (n, 2), found shape {points.shape}, or NaN or infinity in them")
+    if segments.ndim != 2 or segments.shape[1] != 2 or not (left.shape == right.shape == segments.shape[:1]):
+        raise NetworkError(f"segments, left, right: expected (s, 2), (s,), (s,), found {segments.shape}, {left.shape}, {right.shape}")
     if len(segments) and not (0 <= segments.min() and segments.max() < len(points)):
         raise NetworkError(f"segments: expected indices of {len(points)} points, found {segments.min()} to {segments.max()}")
+    none = (points[segments[:, 0]] == points[segments[:, 1]]).all(axis=1)
+    if none.any():
+        raise NetworkError("segments: expected two different points each", np.flatnonzero(none))
+
+
+def _insert(points: Floats, segments: Ints) -> pythoncdt.Triangulation:
+    """Triangulate; the outer triangles and holes are still there."""
+    points = np.ascontiguousarray(points, np.float64)
     triangulation = pythoncdt.Triangulation(
         pythoncdt.VertexInsertionOrder.AUTO, pythoncdt.IntersectingConstraintEdges.NOT_ALLOWED, 0.0
     )
@@ -159,8 +170,8 @@ def _insert(points: Floats, segments: Ints) -> pythoncdt.Triangulation:
 
 def _label(triangulation: pythoncdt.Triangulation, n: int, segments: Ints, left: Ints, right: Ints) -> tuple[Ints, Ints]:
     """All triangles, also those of region 0, and the regions that the segments vote for."""
-    table = triangulation.triangles_array()
-    triangles, neighbours = table["vertices"].astype(np.int64) - SUPER, table["neighbors"].astype(np.int64)
+    table = triangulation.triangles_array(copy=False)
+    triangles, neighbours = table["vertices"].astype(np.int64) - SUPER, table["neighbors"].view(np.int32)
     outer = np.flatnonzero(triangles.min(axis=1) < 0)
     edges, owners, votes = _votes(triangles, n, segments, left, right)
     faces = _faces(neighbours, edges)
@@ -203,13 +214,15 @@ def _votes(triangles: Ints, n: int, segments: Ints, left: Ints, right: Ints) -> 
     return edges, found % len(segments), np.concatenate([left, right])[found]
 
 
-def _faces(neighbours: Ints, walls: Ints) -> Ints:
-    """Number the faces: triangles joined across edges that are no walls."""
-    open_ = neighbours < len(neighbours)  # else there is no neighbour
-    open_.ravel()[walls] = False
-    ends = np.concatenate([[0], np.cumsum(open_.sum(axis=1))])
-    graph = csr_array((np.ones(ends[-1], np.int8), neighbours[open_], ends), shape=(len(neighbours),) * 2)
-    # A graph whose links all go both ways: "strong" finds the same as "weak", without a transposed copy.
+def _faces(neighbours: NDArray[np.int32], walls: Ints) -> Ints:
+    """Number the faces: triangles joined across edges that are no walls. No neighbour is -1."""
+    passable = neighbours >= 0
+    passable.ravel()[walls] = False
+    ends = np.zeros(len(neighbours) + 1, np.int32)
+    np.cumsum(passable.sum(axis=1), out=ends[1:])
+    beyond = neighbours[passable]
+    graph = csr_array((np.ones(len(beyond)), beyond, ends), shape=(len(neighbours),) * 2)
+    # Its links all go both ways: strongly connected is connected, and found without a transposed copy.
     faces: Ints = connected_components(graph, connection="strong")[1]
     return faces
 

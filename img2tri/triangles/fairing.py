@@ -55,7 +55,7 @@ def fair_curves(
     width
         World units. Of waves of this length along the curve each pass takes a quarter, of waves of twice the length 1/300. None takes
         24 times the tolerance, or four times the mean length of the curves' edges if that is more: pixel steps are gone, a
-        disc six tolerances across is still round.
+        disc twelve tolerances across is still round.
     iterations
         Number of passes.
     regions : (m,) int64, optional
@@ -173,7 +173,8 @@ class _Curves:
         self.bending = csr_array(time**2 * (L.T @ diags_array(bends / self.masses) @ L))
         system = self.bending + diags_array(self.masses)
         self.rows = [np.flatnonzero(self.free[:, c]) for c in range(2)]
-        self.solvers = [splu(system[r][:, r].tocsc(), "MMD_AT_PLUS_A", options={"SymmetricMode": True}) if len(r) else None for r in self.rows]
+        parts = [system[r][:, r].tocsc() for r in self.rows]
+        self.solvers = [splu(part, "MMD_AT_PLUS_A", options={"SymmetricMode": True}) if part.shape[0] else None for part in parts]
 
         # Curves are joined through vertices where they bend; held ones are ends.
         inner = bends[i] & bends[j]
@@ -184,7 +185,7 @@ class _Curves:
     def smooth(self, x: Floats) -> Floats:
         """Take one implicit step from x, each coordinate by itself as it has its own free vertices, and take its shrinkage back."""
         result = x.copy()
-        pull = -(self.bending @ x)
+        pull = -(self.bending @ (x - x.mean(axis=0)))  # far from the origin sums would cancel
         for c, (rows, solver) in enumerate(zip(self.rows, self.solvers, strict=True)):
             if solver is not None:
                 step = solver.solve(pull[rows, c])

@@ -15,7 +15,7 @@ from img2tri.triangles.grading import Sizes
 from img2tri.triangles.lattice import Complex
 from img2tri.triangles.network import Network
 
-CROWDED = 0.72  # two points nearer than this times the wanted edge length are one too many
+CROWDED = 0.68  # two points nearer than this times the wanted edge length are one too many
 MIDDLE = 0.6  # the middle of a segment keeps others off by this part of what a point does: an apex may look at it from near
 
 

@@ -21,7 +21,7 @@ from img2tri.records import Bools, Floats, Ints
 from img2tri.triangles.lattice import Complex, Lattice
 
 FINER = 3**0.5  # ratio of pitches from one lattice to the next
-LONGEST = 1.32  # a lattice is used where the wanted length is less than this times its pitch: FINER halved by ratio
+LONGEST = 1.36  # a lattice is used where the wanted length is less than this times its pitch: FINER halved by ratio
 
 
 @dataclass(frozen=True)
@@ -46,6 +46,19 @@ class Sizes:
     lengths: Floats
     field: Callable[[Floats], Floats] | None = None
 
+    @classmethod
+    def near(
+        cls, places: Complex, lengths: Floats, largest: float, gradation: float, field: Callable[[Floats], Floats] | None = None
+    ) -> Sizes:
+        """Take those places as sources where the length is short enough to call for a finer lattice."""
+        short = lengths < largest * LONGEST / FINER
+        return cls(largest, gradation, places[short], lengths[short], field)
+
+    @property
+    def reach(self) -> float:
+        """How far from a source a finer lattice may be needed."""
+        return ((LONGEST + self.gradation) / FINER * self.largest - float(self.lengths.min(initial=self.largest))) / self.gradation
+
     @property
     def uniform(self) -> bool:
         """Whether the wanted length is the same everywhere."""
@@ -57,7 +70,7 @@ class Sizes:
         if self.field is not None:
             wanted = np.minimum(wanted, self.field(pairs(points)))
         # Least of length + gradation * distance over all sources, found as the nearest source among those of about equal length.
-        level = np.floor(np.log2(self.largest / self.lengths) * 2).astype(np.int64)
+        level = np.floor(np.log2(self.largest / self.lengths)).astype(np.int64)
         for k in np.unique(level):
             sources, lengths = self.sources[level == k], self.lengths[level == k]
             reach = (self.largest - lengths.min()) / self.gradation

@@ -65,6 +65,11 @@ class Lattice:
         return cls((low + high) / 2 - centre + shift * pitch, pitch, columns + 1, rows + 1)
 
     @property
+    def height(self) -> float:
+        """Distance of rows."""
+        return ROW * self.pitch
+
+    @property
     def count(self) -> int:
         """Number of nodes, those of a last odd row filled up."""
         return self.start(self.rows + self.rows % 2)
@@ -88,7 +93,7 @@ class Lattice:
         *on* a segment either side is returned.
         """
         # The first row at or above each point; a segment crosses the rows from that of its lower to below that of its upper end.
-        first = np.ceil((points.imag - self.origin.imag) / (ROW * self.pitch)).astype(np.int64)
+        first = np.ceil((points.imag - self.origin.imag) / self.height).astype(np.int64)
         a, b = segments.T
         rising = first[b] > first[a]
         low, high = np.where(rising, a, b), np.where(rising, b, a)
@@ -97,7 +102,7 @@ class Lattice:
         of = np.repeat(np.arange(len(segments)), crossed)
         row = np.arange(len(of)) - np.repeat(np.cumsum(crossed) - crossed, crossed) + first[low[of]]
         p, q = points[low[of]], points[high[of]]
-        height = row * (ROW * self.pitch) + self.origin.imag
+        height = row * self.height + self.origin.imag
         x = p.real + (q.real - p.real) * (height - p.imag) / (q.imag - p.imag)
         column = np.ceil((x - self.origin.real) / self.pitch - 0.5 * (row % 2)).astype(np.int64)
         steps = np.zeros(self.count, np.int32)
@@ -163,9 +168,8 @@ class Depth:
     up: Bools
     down: Bools
 
-    @property
     def nodes(self) -> Bools:
-        """Which nodes are corners of triangles."""
+        """Mark the nodes that are corners of triangles."""
         w, n = self.lattice.width, len(self.labels)
         used = np.zeros(n, bool)
         for triangles, corners in ((self.up, (0, 1, w)), (self.down, (1, w + 1, w))):
@@ -173,9 +177,8 @@ class Depth:
                 used[corner : corner + len(triangles)] |= triangles
         return used
 
-    @property
     def front(self) -> Ints:
-        """The edges (k, 2) between these triangles and the rest, as pairs of nodes with the triangles on their left."""
+        """Find the edges (k, 2) between these triangles and the rest, as pairs of nodes with the triangles on their left."""
         w = self.lattice.width
         edges = []
         # Every edge of the lattice has an up triangle on one side and a down triangle on the other: ends of the edge

@@ -25,12 +25,15 @@ class Network:
         (s, 2) int64.
     left, right
         (s,) int32, codes of the regions: small numbers, 0 for what is not meshed.
+    origin
+        (s,) int64, which of the segments given by the caller each is, or is a part of; -1 for none.
     """
 
     points: Complex
     segments: Ints
     left: Labels
     right: Labels
+    origin: Ints
 
     @property
     def ends(self) -> tuple[Complex, Complex]:
@@ -75,7 +78,18 @@ class Network:
         begin[new] = len(self.points) + np.arange(len(new))
         end_ = self.segments[of, 1]
         end_[new - 1] = begin[new]
-        return Network(np.concatenate([self.points, points]), np.stack([begin, end_], axis=1), self.left[of], self.right[of])
+        return Network(np.concatenate([self.points, points]), np.stack([begin, end_], axis=1), self.left[of], self.right[of], self.origin[of])
+
+    def joined(self, points: Complex, segments: Ints, right: Labels) -> Network:
+        """Add points, and segments between these, with nothing meshed on their left."""
+        none = np.zeros(len(segments), np.int32)
+        return Network(
+            points=np.concatenate([self.points, points]),
+            segments=np.concatenate([self.segments, segments + len(self.points)]),
+            left=np.concatenate([self.left, none]),
+            right=np.concatenate([self.right, right]),
+            origin=np.concatenate([self.origin, none - 1]),
+        )
 
 
 def runs(counts: Ints) -> tuple[Ints, Ints]:

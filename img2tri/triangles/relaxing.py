@@ -26,14 +26,14 @@ from img2tri.triangles.lattice import Complex
 
 TURN = np.exp(2j * np.pi / 3)
 DEFECT = np.array([1, TURN, TURN**2])
+SAFE = 3**-0.5  # tangent of 30 degrees
 FLATTEST = 0.05  # qualities below this weigh as much as this, else one flat triangle stops its neighbours
 
 Schedule = Sequence[tuple[int, float, int]]
 """Rows of (doublings, damping, steps): the power of the weights is 2 to the number of doublings."""
 TARGET, ROUNDS, MARGIN = 44.0, 2, 2.0
-SMOOTH: Schedule = ((1, 1.0, 6),)
-AGAIN: Schedule = ((1, 1.0, 3), (1, 0.8, 3))
-ANNEAL: Schedule = ((2, 0.6, 4), (3, 0.5, 5), (4, 0.3, 6))
+SMOOTH: Schedule = ((1, 1.0, 3),)
+ANNEAL: Schedule = ((1, 1.0, 2), (1, 0.8, 3), (2, 0.6, 3), (3, 0.5, 4), (4, 0.3, 6))
 CLIMB: Schedule = ((5, 0.3, 8), (6, 0.2, 12), (7, 0.1, 30))
 
 
@@ -47,15 +47,20 @@ def shapes(vertices: Complex, triangles: Ints) -> tuple[Complex, Floats]:
     return median + side, -2 * cross / squares
 
 
-def smallest_angles(vertices: Complex, triangles: Ints) -> Floats:
-    """Return the smallest angle of each triangle in degrees; negative for clockwise ones."""
+def smallest_tangents(vertices: Complex, triangles: Ints) -> Floats:
+    """Return the tangent of the smallest angle of each triangle, which grows with the angle; negative for clockwise triangles."""
     a, b, c = (vertices[corner] for corner in triangles.T)
     u, v, w = b - a, c - b, a - c
     squares = [side.real**2 + side.imag**2 for side in (u, v, w)]
-    shortest = np.minimum(np.minimum(*squares[:2]), squares[2])
+    shortest = np.minimum(np.minimum(squares[0], squares[1]), squares[2])
     # The smallest angle lies opposite the shortest side: cot = (sum of the other squares - its square) / (4 area).
-    area = u.real * v.imag - u.imag * v.real
-    angles: Floats = np.degrees(np.arctan2(2 * area, sum(squares) - 2 * shortest))
+    tangents: Floats = 2 * (u.real * v.imag - u.imag * v.real) / (squares[0] + squares[1] + squares[2] - 2 * shortest)
+    return tangents
+
+
+def smallest_angles(vertices: Complex, triangles: Ints) -> Floats:
+    """Return the smallest angle of each triangle in degrees; negative for clockwise ones."""
+    angles: Floats = np.degrees(np.arctan(smallest_tangents(vertices, triangles)))
     return angles
 
 
@@ -66,17 +71,17 @@ def relaxed(vertices: Complex, triangles: Ints, free: Bools, schedule: Schedule)
     used = np.zeros(n, bool)
     used[triangles] = True
     where = np.flatnonzero(free & used)
-    # One row per free vertex, one column per triangle.
-    places = (triangles.ravel(), np.repeat(np.arange(m), 3))
-    weighed = csr_array((np.ones(3 * m), places), shape=(n, m))[where]
-    asked = csr_array((np.tile(-DEFECT.conj(), m), places), shape=(n, m))[where]
+    # One row per free vertex, one column per triangle; at first with the numbers of the corners, from 0 to 3 m - 1.
+    corners = csr_array((np.arange(3 * m), (triangles.ravel(), np.repeat(np.arange(m), 3))), shape=(n, m))[where]
+    asked = csr_array((-DEFECT.conj()[corners.data % 3], corners.indices, corners.indptr), shape=corners.shape)
+    heard = csr_array((np.ones(corners.nnz), corners.indices, corners.indptr), shape=corners.shape)
     for doublings, damping, steps in schedule:
         for _ in range(steps):
             defect, quality = shapes(moved, triangles)
             weight = 1 / np.maximum(quality, FLATTEST)
             for _ in range(doublings):
                 weight *= weight
-            moved[where] += damping * (asked @ (weight * defect)) / (weighed @ weight)
+            moved[where] += damping * (asked @ (weight * defect)) / (heard @ weight)
     return _guarded(vertices, moved, triangles)
 
 
@@ -95,13 +100,13 @@ def climbed(vertices: Complex, triangles: Ints, free: Bools, target: float = TAR
     return vertices
 
 
-def _guarded(before: Complex, after: Complex, triangles: Ints, safe: float = 30.0) -> Complex:
-    """Put back the vertices of triangles that became bad: with an angle that fell below `safe` or below the worst before."""
-    angles = smallest_angles(before, triangles)
-    least = np.minimum(angles, max(safe, angles.min(initial=60.0)))
+def _guarded(before: Complex, after: Complex, triangles: Ints) -> Complex:
+    """Put back the vertices of triangles that became bad: with an angle that fell below 30 degrees or below the worst before."""
+    tangents = smallest_tangents(before, triangles)
+    least = np.minimum(tangents, max(SAFE, tangents.min(initial=np.inf)))
     after = after.copy()
     while True:
-        worse = smallest_angles(after, triangles) < least - 1e-9
+        worse = smallest_tangents(after, triangles) < least - 1e-12
         back = np.unique(triangles[worse])
         back = back[after[back] != before[back]]
         if not len(back):

@@ -1,7 +1,15 @@
 """Adding and removing points where a vertex has too many or too few triangles.
 
-No smoothing makes good triangles around an inner vertex with 4 of them (angles around 90 degrees) or 8 (around 45). Taking the
-first away and splitting the second in two leaves, after triangulating anew, vertices with 5, 6 and 7.
+No smoothing makes good triangles around an inner vertex that has 4 of them (angles about 90 degrees) or 8 (about 45). Here the
+former are taken away and the latter split in two; triangulated anew, this leaves vertices of 5, 6 and 7 triangles::
+
+      o---o---o             o---o---o
+      |\\  |  /|             |  / \\  |
+      | \\ | / |             | /   \\ |
+      o---8---o     ->      o-6---6-o      split across the pair of opposite neighbours
+      | / | \\ |             | \\   / |      that best bear one more triangle each
+      |/  |  \\|             |  \\ /  |
+      o---o---o             o---o---o
 """
 
 from __future__ import annotations
@@ -11,74 +19,69 @@ import numpy as np
 from img2tri.records import Bools, Floats, Ints
 from img2tri.triangles.lattice import Complex
 
+TOO_MANY = 1.5  # triangles more, or less, than there should be
 
-def excess(vertices: Complex, triangles: Ints) -> Floats:
-    """Return how many triangles too many each vertex has, for its angle, so that 60 degrees would be left for each.
 
-    0 is ideal, for a vertex on an outline too: there the triangles fill less than a full turn.
+def surplus(vertices: Complex, triangles: Ints) -> Floats:
+    """Return how many triangles too many each vertex has for its angle, if 60 degrees are right for one.
+
+    This serves vertices on outlines as well: there the triangles fill less than a full turn.
     """
-    a, b, c = vertices[triangles].T
+    a, b, c = (vertices[corner] for corner in triangles.T)
     first, second = np.angle((c - a) / (b - a)), np.angle((a - b) / (c - b))
     angles = np.stack([first, second, np.pi - first - second], axis=1)
-    count = len(vertices)
-    return np.bincount(triangles.ravel(), 1 - angles.ravel() * (3 / np.pi), minlength=count)
+    return np.bincount(triangles.ravel(), 1 - angles.ravel() / (np.pi / 3), minlength=len(vertices))
 
 
 def repaired(vertices: Complex, triangles: Ints, free: Bools) -> tuple[Complex, Bools]:
-    """Return which vertices should go, as places of the points to add and a mask of the vertices that stay."""
-    surplus = excess(vertices, triangles)
-    crowded, sparse = free & (surplus > 1.5), free & (surplus < -1.5)
+    """Return points to add, and which vertices stay; of the free ones those go that are in no triangle, in 4 or less, in 8 or more."""
     stays = ~free
     stays[triangles] = True
-    chosen, rings = _rings(vertices, triangles, np.flatnonzero(crowded | sparse))
-    added = [np.zeros(0, complex)]
-    for valence in np.unique([len(r) for r in rings]) if len(rings) else []:
-        who = np.array([v for v, r in zip(chosen, rings) if len(r)==valence])
-        ring = np.array([r for r in rings if len(r)==valence])
-        if valence <= 4:
-            stays[who] = False
-            continue
-        add, split = _split(vertices, surplus, who, ring)
-        stays[split] = False
-        added.append(add)
-    return np.concatenate(added), stays
+    extra = surplus(vertices, triangles)
+    centre, ring, start = _rings(vertices, triangles, free & (np.abs(extra) > TOO_MANY))
+    stays[centre] = False
+    crowded = extra[centre] > 0
+    start = start[crowded[start]]  # the rings to split, by their first entries
+    return _split(vertices, extra, centre, ring, start), stays
 
 
-def _rings(vertices, triangles, who):
-    want = np.zeros(len(vertices), bool)
-    want[who] = True
-    t, k = np.nonzero(want[triangles])
-    centre, neighbour = triangles[t, k], triangles[t, (k + 1) % 3]
-    order = np.lexsort((np.angle(vertices[neighbour] - vertices[centre]), centre))
-    centre, neighbour = centre[order], neighbour[order]
-    # claims
-    claim = np.full(len(vertices), len(vertices))
-    np.minimum.at(claim, neighbour, centre)
-    np.minimum.at(claim, centre, centre)
-    starts = np.flatnonzero(np.diff(centre, prepend=-1))
-    good = np.minimum.reduceat((claim[neighbour] == centre) & (claim[centre] == centre), starts) if len(starts) else []
-    parts = np.split(neighbour, starts[1:]) if len(starts) else []
-    return [centre[s] for s, g in zip(starts, good) if g], [p for p, g in zip(parts, good) if g]
+def _rings(vertices: Complex, triangles: Ints, chosen: Bools) -> tuple[Ints, Ints, Ints]:
+    """Return the neighbours of chosen vertices, counter-clockwise: entries (centre, neighbour), and the first entry of each centre.
+
+    Of vertices whose rings have a vertex in common, only those of lowest number are kept, so that each may be changed without regard to others.
+    """
+    triangle, corner = np.nonzero(chosen[triangles])
+    centre, ring = triangles[triangle, corner], triangles[triangle, (corner + 1) % 3]
+    order = np.lexsort((np.angle(vertices[ring] - vertices[centre]), centre))
+    centre, ring = centre[order], ring[order]
+    owner = np.full(len(vertices), len(vertices))
+    np.minimum.at(owner, ring, centre)
+    np.minimum.at(owner, centre, centre)
+    disputed = np.zeros(len(vertices), bool)
+    disputed[centre[(owner[ring] != centre) | (owner[centre] != centre)]] = True
+    alone = ~disputed[centre]
+    centre, ring = centre[alone], ring[alone]
+    return centre, ring, np.flatnonzero(np.diff(centre, prepend=-1))
 
 
-def _split(vertices, surplus, who, ring):
-    n = ring.shape[1]
-    k = np.arange(n)
-    best = np.full(len(who), np.inf); at = np.zeros(len(who), int); gap = np.zeros(len(who), int)
-    for d in range(3, n // 2 + 1):
-        cost = surplus[ring] + surplus[np.roll(ring, -d, axis=1)]
-        i = cost.argmin(axis=1)
-        c = cost[np.arange(len(who)), i]
-        better = c < best - 1e-9
-        best[better], at[better], gap[better] = c[better], i[better], d
-    ok = best <= LIMIT
-    who, ring, at, gap = who[ok], ring[ok], at[ok], gap[ok]
-    turned = np.take_along_axis(ring, (at[:, None] + k) % n, axis=1)
-    z = vertices[turned]
-    one = k <= gap[:, None]
-    two = (k >= gap[:, None]) | (k == 0)
-    a = (z * one).sum(1) / one.sum(1)
-    b = (z * two).sum(1) / two.sum(1)
-    c = vertices[who]
-    return np.concatenate([(a + c) / 2, (b + c) / 2]), who
-LIMIT = -0.5
+def _split(vertices: Complex, extra: Floats, centre: Ints, ring: Ints, start: Ints) -> Complex:
+    """Return two points for each ring that begins at `start`: halfway from the centre to the means of the two halves of the ring."""
+    count = np.searchsorted(centre, centre[start], side="right") - start
+    of = np.repeat(np.arange(len(start)), count)
+    place = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
+    half = count // 2
+    opposite = ring[start[of] + (place + half[of]) % count[of]]
+    neighbour = ring[start[of] + place]
+    # The cheapest pair of each ring comes first in this order; then count the places from there.
+    order = np.lexsort((extra[neighbour] + extra[opposite], of))
+    begin = place[order][np.flatnonzero(np.diff(of, prepend=-1))]
+    place = (place - begin[of]) % count[of]
+    points = []
+    for side in (place <= half[of], (place >= half[of]) | (place == 0)):
+        mean = _sums(of[side], vertices[neighbour[side]]) / np.bincount(of[side])
+        points.append((mean + vertices[centre[start]]) / 2)
+    return np.concatenate(points)
+
+
+def _sums(of: Ints, values: Complex) -> Complex:
+    return np.bincount(of, values.real) + 1j * np.bincount(of, values.imag)

@@ -124,7 +124,8 @@ def cotangent(
     tolerance
         World units; needed with a free boundary, and of no effect else. Larger rounds off more, corners too.
     width
-        World units, for a free boundary: waves of this length lose half their height in each pass. None: four edges of the curves.
+        World units, for a free boundary: longer waves along the curves stay, shorter ones go. None: 24 times the tolerance, or four
+        edges of the curves if that is more.
     bounds
         (left, bottom, right, top) of the image, for a free boundary: vertices on this frame only slide along it.
     regions : (m,) int64, optional

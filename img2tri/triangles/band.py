@@ -1,0 +1,135 @@
+"""The band between the outlines and the depth of the lattice: its points, its triangles, and the mesh that both make together.
+
+To the band the depth is one more hole: the edges between both are segments with region 0 on the side of the depth. So the work
+follows the length of the outlines, not the area, and a large mesh costs a fraction of the time that its triangulation would take.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from img2tri.records import Bools, Floats, Ints
+from img2tri.triangles.delaunay import triangulate
+from img2tri.triangles.front import apexes, keepers, spread
+from img2tri.triangles.grading import Sizes, finer, pairs
+from img2tri.triangles.lattice import Complex, Depth, Labels, Lattice
+from img2tri.triangles.network import Network
+from img2tri.triangles.relaxing import ANNEAL, SMOOTH, climbed, relaxed
+from img2tri.triangles.repairing import repaired
+
+CLEAR = 0.66  # lattice nodes nearer to an outline or apex than this times the wanted length are dropped
+REPAIRS = 2  # rounds of repairing and triangulating anew, if there is something to repair
+
+
+@dataclass(frozen=True, eq=False)
+class Band:
+    """Everything that has to be triangulated, and what has not.
+
+    Attributes
+    ----------
+    fence
+        The network of outlines, then the edges of the depth: what stays where it is.
+    own
+        How many of its segments are outlines.
+    loose
+        The points between, which may move.
+    depth
+        The triangles of the depth of the lattice.
+    front
+        Its nodes on the fence: the last points of the fence.
+    """
+
+    fence: Network
+    own: int
+    loose: Complex
+    depth: Depth
+    front: Ints
+
+
+def band(network: Network, sizes: Sizes, lattice: Lattice, rings: int) -> Band:
+    """Place the points of a network: apexes, nodes of the lattice, finer nodes. The depth begins `rings` nodes further in."""
+    walls, walls_wanted = keepers(network, sizes)
+    tips, tips_wanted = apexes(network, sizes)
+    near, wanted = np.concatenate([walls, tips]), np.concatenate([walls_wanted, tips_wanted])
+    stays = spread(near, wanted, len(walls))
+    near, wanted = near[stays], wanted[stays]
+    labels = lattice.labels(network.points, network.segments, network.left, network.right)
+    busy, fine, fine_wanted = _fine(sizes, lattice, labels)
+    if len(fine):
+        fine = fine[_inside(network, fine) & _clear(near, fine, fine_wanted)]
+    labels[lattice.around(near, CLEAR * wanted)] = 0
+    # The depth keeps clear of finer nodes too.
+    core = labels.copy()
+    core[busy] = 0
+    for _ in range(rings):
+        core = lattice.eroded(core)
+    depth = lattice.depth(core)
+    between = np.flatnonzero((labels != 0) & ~depth.nodes())
+    edges = depth.front()
+    front, ends = np.unique(edges, return_inverse=True)
+    fence = network.joined(lattice.positions(front), ends.reshape(-1, 2), right=labels[edges[:, 0]])
+    loose = np.concatenate([near[len(walls) :], lattice.positions(between), fine])
+    return Band(fence, len(network.segments), loose, depth, front)
+
+
+def _fine(sizes: Sizes, lattice: Lattice, labels: Labels) -> tuple[Ints, Complex, Floats]:
+    """Find finer nodes where the wanted length is below the pitch: around its sources, or anywhere if it is a field."""
+    asked = np.zeros(len(labels), bool)
+    if len(sizes.sources):
+        asked[lattice.around(sizes.sources, np.full(len(sizes.sources), lattice.pitch))] = True
+        asked = lattice.grown(asked, 1 + int(sizes.reach / lattice.height))
+    if sizes.field is not None:
+        asked |= lattice.grown(labels != 0, 1)
+    return finer(lattice, np.flatnonzero(asked), sizes)
+
+
+def _inside(network: Network, points: Complex) -> Bools:
+    """Whether points lie in a region: on the right side of the nearest segment. A point misjudged is dropped with its triangles."""
+    _, nearest = cKDTree(pairs(network.middles)).query(pairs(points))
+    start, stop = network.ends
+    on_left = ((points - start[nearest]) / (stop - start)[nearest]).imag > 0
+    return np.where(on_left, network.left[nearest], network.right[nearest]) != 0
+
+
+def _clear(near: Complex, points: Complex, wanted: Floats) -> Bools:
+    distance, _ = cKDTree(pairs(near)).query(pairs(points))
+    return distance > CLEAR * wanted
+
+
+def settled(band: Band) -> tuple[Complex, Ints, Ints]:
+    """Triangulate the band and move its loose points until triangles are good; return vertices, triangles, regions."""
+    fence, loose = band.fence, band.loose
+    fixed = len(fence.points)
+    for repairs_left in reversed(range(REPAIRS + 1)):
+        vertices = np.concatenate([fence.points, loose])
+        free = np.arange(len(vertices)) >= fixed
+        triangles, codes = triangulate(pairs(vertices), fence.segments, fence.left, fence.right)
+        if not repairs_left:
+            break
+        vertices = relaxed(vertices, triangles, free, SMOOTH)
+        added, stays = repaired(vertices, triangles, free)
+        if stays.all():
+            break
+        loose = np.concatenate([vertices[fixed:][stays[fixed:]], added])
+    vertices = relaxed(vertices, triangles, free, ANNEAL)
+    return climbed(vertices, triangles, free), triangles, codes
+
+
+def completed(band: Band, vertices: Complex, triangles: Ints, codes: Ints) -> tuple[Complex, Ints, Ints]:
+    """Join the finished band and the depth in one mesh: fence, loose vertices, depth. Every array is written once, as it may be large."""
+    fixed, m = len(band.fence.points), len(triangles)
+    used = np.arange(len(vertices)) < fixed
+    used[triangles] = True
+    inner = band.depth.nodes()
+    inner[band.front] = False
+    numbers = np.cumsum(inner)
+    numbers += np.count_nonzero(used) - 1
+    numbers[band.front] = np.arange(fixed - len(band.front), fixed)
+    all_triangles = np.zeros((m + len(band.depth), 3), np.int64)
+    all_codes = np.zeros(len(all_triangles), np.int64)
+    all_triangles[:m], all_codes[:m] = (np.cumsum(used) - 1)[triangles], codes
+    band.depth.write(numbers, all_triangles[m:], all_codes[m:])
+    return np.concatenate([vertices[used], band.depth.lattice.positions(np.flatnonzero(inner))]), all_triangles, all_codes
