@@ -13,8 +13,10 @@ import numpy as np
 
 from img2tri.raster.zones import Zones
 from img2tri.records import Floats, Frame, Ints, Made, Outlines
-from img2tri.shapes.coarsening import area_error, draft, keep_areas, refine, settle
+from img2tri.shapes.areas import area_error, keep_areas
+from img2tri.shapes.coarsening import refine, settle
 from img2tri.shapes.cracks import find_cracks
+from img2tri.shapes.drafts import draft
 from img2tri.shapes.links import Links
 from img2tri.shapes.placing import place, place_on_sides
 
@@ -85,7 +87,7 @@ def conform(
                 raise
             doubtful = chains.points[segments[error.segments if len(error.segments) else slice(None)]].reshape(-1, 2)
         before = coarse
-        coarse = refine(coarse, doubtful[:, 0] + 1j * doubtful[:, 1], within=1.0 + 0.5 * attempt)
+        coarse = refine(coarse, doubtful[:, 0] + 1j * doubtful[:, 1], within=1.0 + 0.5 * attempt, tolerance=tolerance)
         coarse = settle(coarse, tolerance=tolerance)
         if (coarse.breaks == before.breaks).all() and (coarse.reset == before.reset).all():
             break

@@ -148,6 +148,7 @@ def mesh_image(
     integer("iterations", iterations)
     integer("seed", seed)
     finite("min_angle", min_angle, least=0, most=33)
+    _check_paper_options(recipe, paper)
     if connectivity not in (4, 8):
         raise ParameterError(f"connectivity: expected 4 or 8, found {connectivity!r}")
 
@@ -176,8 +177,8 @@ def mesh_image(
             keep_area=keep_area, seed=seed, progress=tell,
         )  # fmt: skip
     else:
-        if edge_length is None:
-            paper.setdefault("step", PAPER_STEP)
+        if edge_length is None and recipe == "structured":
+            paper = {"step": PAPER_STEP, **paper}
         passes = iterations if (smoothing or PAPER_SMOOTHING[recipe]) == "uniform" else 0
         made = paper_mesh(
             zones.labels, frame, recipe=recipe, background=zones.background, edge_length=length,
@@ -219,6 +220,16 @@ def mesh_image(
         mesh = mesh.smoothed("uniform", iterations=iterations)
     tell("done", 1.0)
     return mesh
+
+
+def _check_paper_options(recipe: str, paper: PaperOptions) -> None:
+    """Refuse options that are unknown, or of another recipe."""
+    unknown = sorted(set(paper) - set(PaperOptions.__annotations__))
+    if unknown:
+        raise TypeError(f"mesh_image() got an unexpected keyword argument {unknown[0]!r}")
+    known = {"conforming": set(), "structured": {"step"}, "unstructured": set(PaperOptions.__annotations__) - {"step"}}[recipe]
+    for name in sorted(set(paper) - known):
+        raise ParameterError(f"{name}: not an option of recipe {recipe!r}; leave it out, or choose another recipe")
 
 
 def _above(level: Level | None) -> str:

@@ -36,6 +36,7 @@ def check_promises(mesh, labels, *, background, tolerance, min_angle, connectivi
         oracles.check_faithful(v, t, r, labels, background=background, tolerance=tolerance)
     report = mesh.report
     assert report.kept, report.warnings
+    assert report.hausdorff <= tolerance * (1 + 1e-9)
     assert report.smallest_angle == pytest.approx(oracles.angles(v, t).min(), abs=1e-6)
     for label in meshed:
         mine = t[r == label]
@@ -150,8 +151,6 @@ def test_pixels_of_any_shape(case, ratio, origin):
     labels, background = case
     mesh = mesh_image(labels, labels=True, background=background, spacing=(1, ratio), origin=origin)
     oracles.check_valid(mesh.vertices, mesh.triangles)
-    assert oracles.angles(mesh.vertices, mesh.triangles).min() >= 30 - 1e-6
-    assert mesh.report.kept, mesh.report.warnings
     upward = mesh.vertices * [1, 1 / ratio] if origin == "lower" else [0, labels.shape[0]] + mesh.vertices * [1, -1 / ratio]
     assert upward.min() >= -1e-9
     assert (upward.max(axis=0) <= np.array(labels.shape[::-1]) + 1e-9).all()
@@ -159,14 +158,27 @@ def test_pixels_of_any_shape(case, ratio, origin):
 
 
 @QUICK
-@given(strategies.maps_and_backgrounds(10), st.sampled_from(["uniform", "cotangent"]), st.integers(0, 20))
-def test_smoothing_never_spoils(case, smoothing, iterations):
+@given(strategies.maps_and_backgrounds(10), st.sampled_from(["uniform", "fixed", "free"]), st.integers(0, 20))
+def test_smoothing_never_spoils(case, how, iterations):
     labels, background = case
     plain = mesh_image(labels, labels=True, background=background, edge_length=2)
-    mesh = mesh_image(labels, labels=True, background=background, edge_length=2, smoothing=smoothing, iterations=iterations)
+    options = {"method": "uniform"} if how == "uniform" else {"method": "cotangent", "boundary": how}
+    mesh = plain.smoothed(iterations=iterations, **options)
+    assert np.array_equal(mesh.triangles, plain.triangles)
     assert (oracles.areas(mesh.vertices, mesh.triangles) > 0).all()
     assert oracles.angles(mesh.vertices, mesh.triangles).min() >= oracles.angles(plain.vertices, plain.triangles).min() - 1e-6
-    assert np.array_equal(mesh.triangles, plain.triangles)
+    moved = np.linalg.norm(mesh.vertices - plain.vertices, axis=1)[np.unique(oracles.boundary(plain.triangles))]
+    assert moved.max() <= (0.5 + 1e-9 if how == "free" else 0)
+
+
+@QUICK
+@given(strategies.maps_and_backgrounds(10), st.sampled_from(["uniform", "cotangent"]), st.integers(0, 20))
+def test_smoothing_in_one_call_keeps_the_angles(case, smoothing, iterations):
+    labels, background = case
+    mesh = mesh_image(labels, labels=True, background=background, smoothing=smoothing, iterations=iterations)
+    oracles.check_valid(mesh.vertices, mesh.triangles)
+    assert oracles.angles(mesh.vertices, mesh.triangles).min() >= 30 - 1e-6
+    assert oracles.mesh_neighbours(mesh.triangles, mesh.regions) == oracles.pixel_neighbours(labels, background)
 
 
 @QUICK

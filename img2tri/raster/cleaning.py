@@ -117,7 +117,7 @@ def _numbers_after(parts: Components, least: float | None, background: int | Non
 def _largest(parts: Components) -> Bools:
     """Tell which components are the largest of their label, or background."""
     order = np.lexsort((-parts.area, parts.number))
-    keep = parts.number == 0
+    keep: Bools = parts.number == 0
     keep[order[np.diff(parts.number[order], prepend=-1) > 0]] = True
     return keep
 

@@ -91,7 +91,8 @@ def find_components(labels: NDArray[Any], *, background: int | None = 0, connect
     number = np.where(is_region, np.cumsum(is_region), 0)[which]
 
     # Where runs of neighbouring rows touch, and where four of them meet in a corner.
-    pieces = np.unique(np.concatenate([start[start >= w], start[start < (h - 1) * w] + w]))
+    pieces = np.sort(np.concatenate([start[start >= w], start[start < (h - 1) * w] + w]), kind="stable")
+    pieces = pieces[np.diff(pieces, prepend=-1) > 0]
     above, below = (np.searchsorted(start, at, "right") - 1 for at in (pieces - w, pieces))
     across = np.diff(pieces, append=h * w)
     inner = np.flatnonzero((start % w > 0) & (start < (h - 1) * w))

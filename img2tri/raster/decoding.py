@@ -1,7 +1,8 @@
 """A file -> the values in it, what was noted while reading, and the size of a pixel in millimetres if the file says it.
 
 Pillow decodes: it keeps palette indices and bit depth, reports truncated files and knows EXIF. It loses bits in two
-places, which are read otherwise: PNG colours of 16 bit by OpenCV, and TIFFs of types Pillow has no mode for by tifffile.
+places, which are read otherwise: PNG colours of 16 bit by OpenCV, and TIFFs of types Pillow has no mode for by tifffile. DICOM and
+NIfTI, known by their content or else by their suffix, are read in ``medical``.
 """
 
 from __future__ import annotations
@@ -26,6 +27,8 @@ BITS, SAMPLE_FORMAT = 258, 339  # tags of TIFF
 ASSOCIATED = 1  # TIFF's word for colours multiplied by their alpha
 TIFF_STARTS = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
 DRAWINGS = ("EPS", "WMF")
+MEDICAL = {".dcm": "DICOM", ".dicom": "DICOM", ".nii": "NIfTI", ".nii.gz": "NIfTI"}
+START = 348  # bytes that tell all formats apart
 
 # Modes of Pillow whose arrays are the values in the file; the others become one of these.
 PLAIN_MODES = ("1", "L", "P", "RGB", "RGBA", "I", "F", "I;16", "I;16B", "I;16L", "I;16N")
@@ -42,7 +45,7 @@ def decode(path: Path, page: int, max_pixels: int) -> Decoded:
     path
         The file.
     page
-        Which image of a file with several, from 0.
+        Which image, frame or slice of a file with several, from 0.
     max_pixels
         Refuse an image with more.
 
@@ -54,7 +57,7 @@ def decode(path: Path, page: int, max_pixels: int) -> Decoded:
     Raises
     ------
     FileError
-        If the file is missing, a folder, not an image, damaged or truncated.
+        If the file is missing, a folder, not an image, damaged or truncated; if a library it needs is.
     ImageError
         If it has more than `max_pixels`.
     ParameterError
@@ -62,6 +65,11 @@ def decode(path: Path, page: int, max_pixels: int) -> Decoded:
     """
     start = _start(path)
     try:
+        kind = _medical(path, start)
+        if kind:
+            from img2tri.raster.medical import decode_dicom, decode_nifti
+
+            return (decode_dicom if kind == "DICOM" else decode_nifti)(path, page, max_pixels)
         if start[:4] in TIFF_STARTS and not _pillow_reads_tiff(path, page):
             return _decode_tiff(path, page, max_pixels)
         return _decode(path, start, page, max_pixels)
@@ -80,7 +88,7 @@ def _start(path: Path) -> bytes:
         raise FileError(f"image: expected a file, found the folder {str(path)!r}")
     try:
         with path.open("rb") as file:
-            start = file.read(32)
+            start = file.read(START)
     except FileNotFoundError as error:
         raise FileError(f"image: there is no file {str(path)!r}") from error
     except (OSError, ValueError) as error:
@@ -88,6 +96,15 @@ def _start(path: Path) -> bytes:
     if not start:
         raise FileError(f"image: {str(path)!r} is empty")
     return start
+
+
+def _medical(path: Path, start: bytes) -> str | None:
+    """Tell a DICOM and a NIfTI file by its content, or by its suffix where that says nothing."""
+    if start[128:132] == b"DICM":
+        return "DICOM"
+    if start[344:348] == b"n+1\0" or start[4:8] == b"n+2\0":
+        return "NIfTI"
+    return next((kind for suffix, kind in MEDICAL.items() if path.name.lower().endswith(suffix)), None)
 
 
 @contextmanager
@@ -108,7 +125,7 @@ def _opened(path: Path) -> Iterator[Image.Image]:
             yield img
 
 
-def _check(path: Path, page: int, pages: int, width: int, height: int, max_pixels: int) -> dict[str, Any]:
+def check_page(path: Path, page: int, pages: int, width: int, height: int, max_pixels: int) -> dict[str, Any]:
     """Check page and size before anything is decoded, and note the page."""
     if page >= pages:
         raise ParameterError(f"page: expected 0 to {pages - 1} in {str(path)!r}, found {page}")
@@ -126,10 +143,10 @@ def _decode(path: Path, start: bytes, page: int, max_pixels: int) -> Decoded:
         if kind in DRAWINGS:
             raise FileError(f"image: {str(path)!r} is a drawing ({kind}), not pixels; convert it to PNG first")
         pages = int(getattr(img, "n_frames", 1))
-        notes = {"format": kind} | _check(path, page, pages, *img.size, max_pixels)
+        notes = {"format": kind} | check_page(path, page, pages, *img.size, max_pixels)
         if page:
             img.seek(page)
-            _check(path, page, pages, *img.size, max_pixels)
+            check_page(path, page, pages, *img.size, max_pixels)
         turn, size = orientation(exif(img)), pixel_size(img)
         img.load()
         deep = _deep_png(path, start) if page == 0 else None
@@ -227,7 +244,7 @@ def _decode_tiff(path: Path, page: int, max_pixels: int) -> Decoded:
     with tifffile.TiffFile(path) as file:
         pages = len(file.pages)
         sheet = file.pages[min(page, pages - 1)].aspage()
-        notes = {"format": "TIFF"} | _check(path, page, pages, sheet.imagewidth, sheet.imagelength, max_pixels)
+        notes = {"format": "TIFF"} | check_page(path, page, pages, sheet.imagewidth, sheet.imagelength, max_pixels)
         values = np.asarray(sheet.asarray())
         tags = {tag.code: tag.value for tag in sheet.tags}
         colormap, multiplied = sheet.colormap, tuple(sheet.extrasamples) == (ASSOCIATED,)

@@ -2,7 +2,8 @@
 
 Nothing is scaled, thresholded or turned into gray here, so label numbers, 16-bit values and palette indices survive.
 Files are decoded by Pillow rather than by ``cv2.imread``, which hides much of what matters: it hands out a partial image for a
-truncated JPEG, ignores the orientation a camera noted, and replaces palette indices, which may be labels, by colours.
+truncated JPEG, ignores the orientation a camera noted, and replaces palette indices, which may be labels, by colours. DICOM and
+NIfTI come through pydicom and nibabel.
 """
 
 from __future__ import annotations
@@ -18,6 +19,8 @@ from img2tri.raster.imagedata import from_image_data, is_image_data
 from img2tri.records import Frame, Picture
 
 Pair = tuple[float, float]
+
+CARRY_SPACING = ("DICOM", "NIfTI")  # formats made to say how large a pixel is
 
 
 def read(
@@ -36,14 +39,14 @@ def read(
         A path (str or PathLike); an array (h, w) or (h, w, 3 or 4) of bool, integers or floats; or a planar
         ``pyvista.ImageData``, whose active scalars are taken (its first ones if none are active).
     spacing
-        The size of a pixel in world units: a number, a pair (dx, dy), or "file", which takes the resolution noted in a TIFF,
-        PNG or JPEG file, in millimetres. None is 1, whatever the file says, since many files carry a resolution of 72 dpi nobody
-        chose; an ImageData always keeps its own.
+        The size of a pixel in world units: a number, a pair (dx, dy), or "file", which takes the size or resolution noted in a
+        TIFF, PNG, JPEG, DICOM or NIfTI file, in millimetres. None is "file" for DICOM and NIfTI, if they note a size; 1 for
+        all else, whatever the file says, since many carry a resolution of 72 dpi nobody chose. An ImageData always keeps its own.
     origin
         "lower": x points right and y up, the lower-left corner of the image is at (0, 0). "upper": y points down, as in image
         coordinates, the corner of the first pixel is at (0, 0). A pair (x, y): as "lower", with the corner there.
     page
-        Which image of a file with several, from 0.
+        Which image of a file with several, from 0: a page, a frame, a slice across the third axis of a NIfTI file.
     max_pixels
         A file that claims more pixels than this is refused before it is decoded, so that a small file cannot fill the memory.
 
@@ -52,12 +55,13 @@ def read(
     Picture
         Its `notes` hold what was found in a file: "format"; "pages" where there are several, and the "page" taken;
         "orientation" (EXIF, 2 to 8) where the image had to be turned; "palette", (n, 3 or 4) uint8, where the values are
-        indices into it; "spacing", "file" or "ImageData", where it was not given in numbers.
+        indices into it; "spacing", "file" or "ImageData", where it was not given in numbers. For more on DICOM and NIfTI see
+        `medical`.
 
     Raises
     ------
     FileError
-        If the file is missing, a folder, not an image, damaged or truncated.
+        If the file is missing, a folder, not an image, damaged or truncated; if it needs a library that is not installed.
     ImageError
         If the values are not those of an image: wrong shape or type, no pixels, NaN or infinite, too many pixels.
     ParameterError
@@ -88,6 +92,8 @@ def read(
             raise ParameterError(f"page: expected 0 for an array, which is one image, found {page}")
         values = image
     values = pixels(values)
+    if spacing is None and noted is not None and notes.get("format") in CARRY_SPACING:
+        spacing = "file"
     size = _spacing(spacing, noted, source)
     if isinstance(spacing, str):
         notes["spacing"] = spacing

@@ -83,7 +83,7 @@ def find_zones(
     if chosen.how == "given" and not _two_valued(gray):
         # Strictly greater is foreground: of whole numbers the level lies between two.
         whole = np.issubdtype(gray.dtype, np.integer)
-        return Zones(mask, 0, chosen, gray, np.floor(chosen.value) + 0.5 if whole else chosen.value)
+        return Zones(mask, 0, chosen, gray, float(np.floor(chosen.value)) + 0.5 if whole else chosen.value)
     return Zones(mask, 0, chosen, gray if chosen.how == "otsu" else None)
 
 

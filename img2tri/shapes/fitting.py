@@ -80,6 +80,8 @@ def widest_fit(s: Sliding) -> Floats:
 
 def _blend(shift: Floats, level: Ints, s: Sliding) -> Floats:
     """Pick each point's own scale, with a soft transition where neighbours took different ones."""
+    if not level.any():
+        return np.zeros(shift.shape[1])
     kernel = np.array([1.0, 8, 28, 56, 70, 56, 28, 8, 1]) / 256
     line = Unrolled(s.indices, s.starts, s.rings, np.diff(s.starts) > 1, len(kernel) // 2)
     at, result = line.source[line.own], np.zeros(shift.shape[1])

@@ -9,12 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from img2tri.records import Bools, Floats, Ints
 from img2tri.triangles.delaunay import triangulate
 from img2tri.triangles.front import apexes, keepers, spread
-from img2tri.triangles.grading import Sizes, finer, pairs
+from img2tri.triangles.grading import Sizes, finer, nearest_of, pairs
 from img2tri.triangles.lattice import Complex, Depth, Labels, Lattice
 from img2tri.triangles.network import Network
 from img2tri.triangles.relaxing import ANNEAL, SMOOTH, climbed, relaxed
@@ -70,7 +69,7 @@ def band(network: Network, sizes: Sizes, lattice: Lattice, rings: int) -> Band:
     between = np.flatnonzero((labels != 0) & ~depth.nodes())
     edges = depth.front()
     front, ends = np.unique(edges, return_inverse=True)
-    fence = network.joined(lattice.positions(front), ends.reshape(-1, 2), right=labels[edges[:, 0]])
+    fence = network.joined(lattice.positions(front), ends.reshape(-1, 2), right=labels[edges[:, 0]].astype(np.int64))
     loose = np.concatenate([near[len(walls) :], lattice.positions(between), fine])
     return Band(fence, len(network.segments), loose, depth, front)
 
@@ -88,15 +87,17 @@ def _fine(sizes: Sizes, lattice: Lattice, labels: Labels) -> tuple[Ints, Complex
 
 def _inside(network: Network, points: Complex) -> Bools:
     """Whether points lie in a region: on the right side of the nearest segment. A point misjudged is dropped with its triangles."""
-    _, nearest = cKDTree(pairs(network.middles)).query(pairs(points))
+    _, nearest = nearest_of(network.middles, points)
     start, stop = network.ends
     on_left = ((points - start[nearest]) / (stop - start)[nearest]).imag > 0
-    return np.where(on_left, network.left[nearest], network.right[nearest]) != 0
+    inside: Bools = np.where(on_left, network.left[nearest], network.right[nearest]) != 0
+    return inside
 
 
 def _clear(near: Complex, points: Complex, wanted: Floats) -> Bools:
-    distance, _ = cKDTree(pairs(near)).query(pairs(points))
-    return distance > CLEAR * wanted
+    """Whether points keep clear of others."""
+    clear: Bools = nearest_of(near, points)[0] > CLEAR * wanted
+    return clear
 
 
 def settled(band: Band) -> tuple[Complex, Ints, Ints]:
@@ -123,13 +124,17 @@ def completed(band: Band, vertices: Complex, triangles: Ints, codes: Ints) -> tu
     fixed, m = len(band.fence.points), len(triangles)
     used = np.arange(len(vertices)) < fixed
     used[triangles] = True
-    inner = band.depth.nodes()
+    inner = band.depth.nodes()  # not yet numbered
     inner[band.front] = False
-    numbers = np.cumsum(inner)
-    numbers += np.count_nonzero(used) - 1
+    numbers: Ints = np.cumsum(inner, dtype=np.int64)
+    numbers += int(np.count_nonzero(used)) - 1
     numbers[band.front] = np.arange(fixed - len(band.front), fixed)
+    given = int(np.count_nonzero(used))
+    all_vertices = np.zeros(given + int(np.count_nonzero(inner)), np.complex128)
+    all_vertices[:given] = vertices[used]
+    band.depth.lattice.positions(np.flatnonzero(inner), out=all_vertices[given:])
     all_triangles = np.zeros((m + len(band.depth), 3), np.int64)
     all_codes = np.zeros(len(all_triangles), np.int64)
     all_triangles[:m], all_codes[:m] = (np.cumsum(used) - 1)[triangles], codes
     band.depth.write(numbers, all_triangles[m:], all_codes[m:])
-    return np.concatenate([vertices[used], band.depth.lattice.positions(np.flatnonzero(inner))]), all_triangles, all_codes
+    return all_vertices, all_triangles, all_codes

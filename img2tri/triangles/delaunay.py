@@ -6,8 +6,8 @@ that are no segments make a face, and every segment casts two votes, one for the
 region lies on the side of its outlines where it belongs, whatever was done to the outlines before; if not, two outlines have
 changed sides or crossed, and `NetworkError` says where.
 
-Libraries offer to erase "outer triangles and holes" by counting how many outlines surround them. Votes are safer (they check), serve any number of
-regions, and are faster.
+Libraries offer to erase "outer triangles and holes" by counting how many outlines surround them. Votes are safer, as they check;
+they serve any number of regions; and they are faster.
 """
 
 from __future__ import annotations
@@ -147,7 +147,7 @@ def check_network(points: Floats, segments: Ints, left: Ints, right: Ints) -> No
         raise NetworkError(f"points: expected finite coordinates (n, 2), found shape {points.shape}, or NaN or infinity in them")
     if segments.ndim != 2 or segments.shape[1] != 2 or not (left.shape == right.shape == segments.shape[:1]):
         raise NetworkError(f"segments, left, right: expected (s, 2), (s,), (s,), found {segments.shape}, {left.shape}, {right.shape}")
-    if len(segments) and not (0 <= segments.min() and segments.max() < len(points)):
+    if len(segments) and not (segments.min() >= 0 and segments.max() < len(points)):
         raise NetworkError(f"segments: expected indices of {len(points)} points, found {segments.min()} to {segments.max()}")
     none = (points[segments[:, 0]] == points[segments[:, 1]]).all(axis=1)
     if none.any():
@@ -156,13 +156,13 @@ def check_network(points: Floats, segments: Ints, left: Ints, right: Ints) -> No
 
 def _insert(points: Floats, segments: Ints) -> pythoncdt.Triangulation:
     """Triangulate; the outer triangles and holes are still there."""
-    points = np.ascontiguousarray(points, np.float64)
     triangulation = pythoncdt.Triangulation(
         pythoncdt.VertexInsertionOrder.AUTO, pythoncdt.IntersectingConstraintEdges.NOT_ALLOWED, 0.0
     )
     try:
-        triangulation.insert_vertices(points)
-        triangulation.insert_edges(np.ascontiguousarray(segments, np.uint32))
+        # Arrays are buffers, though before Python 3.12 type checkers cannot know.
+        triangulation.insert_vertices(np.ascontiguousarray(points, np.float64))  # type: ignore[call-overload, unused-ignore]
+        triangulation.insert_edges(np.ascontiguousarray(segments, np.uint32))  # type: ignore[call-overload, unused-ignore]
     except RuntimeError as error:
         raise NetworkError(f"points and segments: expected a planar network, found: {error}") from error
     return triangulation
@@ -187,14 +187,14 @@ def _label(triangulation: pythoncdt.Triangulation, n: int, segments: Ints, left:
 
 
 def _votes(triangles: Ints, n: int, segments: Ints, left: Ints, right: Ints) -> tuple[Ints, Ints, Ints]:
-    """Where the segments lie in the triangulation, as indices 3 t + k of edges, and how they vote for triangle t.
+    r"""Find the segments in the triangulation, as edges 3 t + k; return these, their segments, their votes for triangle t.
 
     Edge 3 t + k runs from corner k of triangle t to the next corner and has t on its left::
 
               2
-             / \\
+             / \
             2   1       numbers inside: edges
-           /  0  \\
+           /  0  \
           0-------1     numbers outside: corners
     """
     in_network = np.zeros(n + SUPER, bool)
@@ -215,7 +215,7 @@ def _votes(triangles: Ints, n: int, segments: Ints, left: Ints, right: Ints) -> 
 
 
 def _faces(neighbours: NDArray[np.int32], walls: Ints) -> Ints:
-    """Number the faces: triangles joined across edges that are no walls. No neighbour is -1."""
+    """Give each face a number: triangles joined across edges that are no walls. A neighbour of -1 is none."""
     passable = neighbours >= 0
     passable.ravel()[walls] = False
     ends = np.zeros(len(neighbours) + 1, np.int32)
@@ -223,20 +223,20 @@ def _faces(neighbours: NDArray[np.int32], walls: Ints) -> Ints:
     beyond = neighbours[passable]
     graph = csr_array((np.ones(len(beyond)), beyond, ends), shape=(len(neighbours),) * 2)
     # Its links all go both ways: strongly connected is connected, and found without a transposed copy.
-    faces: Ints = connected_components(graph, connection="strong")[1]
-    return faces
+    return connected_components(graph, connection="strong")[1].astype(np.int64)
 
 
 def _pieces(triangulation: pythoncdt.Triangulation, vertices: Floats, segments: Ints) -> tuple[Ints, Ints]:
     """Segments and pieces of segments after refinement, and which segment each belongs to. Loops over split segments only."""
-    index = {edge: i for i, edge in enumerate(map(tuple, np.sort(segments, axis=1).tolist()))}
+    index = {(lower, upper): i for i, (lower, upper) in enumerate(np.sort(segments, axis=1).tolist())}
     parent = {_ends(piece): _ends(of[0]) for piece, of in triangulation.piece_to_originals_iter()}
-    pieces = np.array([_ends(edge) for edge in triangulation.fixed_edges_iter()], np.int64).reshape(-1, 2)
-    whole = np.zeros(len(pieces), np.int64)
-    for i, edge in enumerate(map(tuple, pieces.tolist())):
+    edges = [_ends(edge) for edge in triangulation.fixed_edges_iter()]
+    whole = np.zeros(len(edges), np.int64)
+    for i, edge in enumerate(edges):
         while edge not in index:
             edge = parent[edge]
         whole[i] = index[edge]
+    pieces = np.array(edges, np.int64).reshape(-1, 2)
     # pythoncdt orders the ends of an edge by number: turn the pieces to run along their segment.
     along = vertices[pieces[:, 1]] - vertices[pieces[:, 0]]
     direction = vertices[segments[whole, 1]] - vertices[segments[whole, 0]]

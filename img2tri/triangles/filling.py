@@ -122,7 +122,7 @@ def _network(points: Floats, segments: Ints, left: Ints, right: Ints) -> tuple[N
     """Give the regions codes near 0, and 0 for region 0; return their names by code, those of negative codes counted from the end."""
     names, codes = np.unique(np.concatenate([[0], left, right]), return_inverse=True)
     zero = int(codes[0])
-    left, right = np.split((codes[1:] - zero).astype(np.int32), 2)
+    left, right = np.split(codes[1:] - zero, 2)
     network = Network(points[:, 0] + 1j * points[:, 1], segments, left, right, np.arange(len(segments)))
     return network, np.roll(names, -zero).astype(np.int64)
 

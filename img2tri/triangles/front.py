@@ -1,8 +1,8 @@
 """The first layer of points in front of the outlines.
 
 In: the segments and the wanted edge length at each. Out: one point per side of a segment, the apex of a nearly equilateral triangle
-over it, thinned out where apexes crowd. This layer decides the worst angle of a mesh: a lattice that simply stops somewhere near the outline leaves angles
-of 26-30 degrees that no smoothing lifts, with the layer they are 40 and more.
+over it, thinned out where apexes crowd. This layer decides the worst angle of a mesh: a lattice that just ends near the outline
+leaves angles of 26 to 30 degrees which no smoothing lifts; with the layer they are 40 and more.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from img2tri.records import Bools, Floats, Ints
-from img2tri.triangles.grading import Sizes
+from img2tri.triangles.grading import Sizes, pairs
 from img2tri.triangles.lattice import Complex
 from img2tri.triangles.network import Network
 
@@ -70,7 +70,7 @@ def _neighbours(points: Complex, wanted: Floats) -> tuple[Ints, Ints]:
     top = float(wanted.max(initial=0.0))
     while top > 0.4 * wanted.min(initial=np.inf):
         members = np.flatnonzero((wanted <= top) & (wanted > 0.3 * top))
-        tree = cKDTree(np.stack([points[members].real, points[members].imag], axis=1))
+        tree = cKDTree(pairs(points[members]))
         found.append(np.sort(members[tree.query_pairs(CROWDED * top, output_type="ndarray")], axis=1))
         top /= 2
     first, second = np.concatenate(found).T

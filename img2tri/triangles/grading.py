@@ -1,12 +1,12 @@
 """How long the edges should be at each place, and the nodes that make a lattice finer where they should be shorter.
 
-In: the wanted edge length, and places where something shorter is needed: short segments, points with a size of their own, a field. Out: the
-wanted edge length anywhere, growing by `gradation` per unit of distance away from such places, and nodes of nested
-lattices that follow it.
+In: the wanted edge length, and places where something shorter is needed: short segments, points with a size of their own, a field.
+Out: the wanted edge length anywhere, growing by `gradation` per unit of distance from such places, and nodes of nested lattices
+that follow it.
 
-A hexagonal lattice of pitch a and the centres of its triangles together are a hexagonal lattice of pitch a / sqrt 3, turned by 30 degrees. So each
-lattice contains all coarser ones, and a node has three children: itself, and the centres of two of its triangles. Where a
-lattice of one pitch ends and a coarser one goes on, the nodes of both fit without a seam to be relaxed.
+A hexagonal lattice of pitch a and the centres of its triangles are together a hexagonal lattice of pitch a / sqrt 3, turned by
+30 degrees. So each lattice contains all coarser ones, and a node has three children: itself, and the centres of two of its
+triangles. Where one lattice ends and a coarser one goes on, the nodes of both fit: none has to be dropped.
 """
 
 from __future__ import annotations
@@ -70,19 +70,25 @@ class Sizes:
         if self.field is not None:
             wanted = np.minimum(wanted, self.field(pairs(points)))
         # Least of length + gradation * distance over all sources, found as the nearest source among those of about equal length.
-        level = np.floor(np.log2(self.largest / self.lengths)).astype(np.int64)
+        level: Ints = np.floor(np.log2(self.largest / self.lengths)).astype(np.int64)
         for k in np.unique(level):
             sources, lengths = self.sources[level == k], self.lengths[level == k]
             reach = (self.largest - lengths.min()) / self.gradation
-            distance, nearest = cKDTree(pairs(sources)).query(pairs(points), distance_upper_bound=reach)
+            distance, nearest = nearest_of(sources, points, reach)
             near = np.flatnonzero(nearest < len(sources))
             wanted[near] = np.minimum(wanted[near], lengths[nearest[near]] + self.gradation * distance[near])
         return wanted
 
 
+def nearest_of(sources: Complex, points: Complex, reach: float = np.inf) -> tuple[Floats, Ints]:
+    """Return the distance of each point to the nearest source within reach, and its number, or the count of sources if there is none."""
+    distance, nearest = cKDTree(pairs(sources)).query(pairs(points), distance_upper_bound=reach)
+    return np.asarray(distance, np.float64), np.asarray(nearest, np.int64)
+
+
 def pairs(points: Complex) -> Floats:
-    """Turn x + iy into (x, y)."""
-    return np.stack([points.real, points.imag], axis=-1)
+    """Turn x + iy into (x, y), without copying: both are two numbers side by side."""
+    return np.ascontiguousarray(points).view(np.float64).reshape(-1, 2)
 
 
 def finer(lattice: Lattice, nodes: Ints, sizes: Sizes) -> tuple[Ints, Complex, Floats]:

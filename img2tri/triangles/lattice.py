@@ -1,4 +1,4 @@
-"""The hexagonal lattice inside of the outlines, and the triangles of its depth, which need no triangulation.
+r"""The hexagonal lattice inside of the outlines, and the triangles of its depth, which need no triangulation.
 
 In: the network of outlines and the pitch of the lattice. Out: the region of every node, nodes near given points cleared away, and the
 triangles of those nodes whose neighbourhood is complete. They are equilateral, and written down directly: the cost of
@@ -9,9 +9,9 @@ node lie at the same distances in the numbering, and work on triangles is work o
 
          f+w-1   f+w
             o-----o               w = width
-           / \\   / \\
+           / \   / \
       f-1 o---- f ----o f+1       up triangle   f: (f, f+1, f+w)
-           \\   / \\   /             down triangle f: (f+1, f+w+1, f+w)
+           \   / \   /             down triangle f: (f+1, f+w+1, f+w)
             o-----o
           f-w   f-w+1
 
@@ -20,6 +20,7 @@ Points are complex numbers, x + iy, here and in all of the mesh stage: turning, 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -72,21 +73,23 @@ class Lattice:
     @property
     def count(self) -> int:
         """Number of nodes, those of a last odd row filled up."""
-        return self.start(self.rows + self.rows % 2)
+        return (self.rows + 1) // 2 * (2 * self.width - 1)
 
-    def start(self, row: Ints | int) -> Ints | int:
-        """Return the first node of a row."""
+    def start(self, row: Ints) -> Ints:
+        """Return the first node of each row."""
         return row // 2 * (2 * self.width - 1) + row % 2 * self.width
 
-    def positions(self, nodes: Ints) -> Complex:
-        """Return the places of nodes."""
-        pair, column = np.divmod(nodes, 2 * self.width - 1)
-        odd = column >= self.width
-        x = column - odd * (self.width - 0.5)
-        y = (2 * pair + odd) * ROW
-        return self.origin + self.pitch * (x + 1j * y)
+    def positions(self, nodes: Ints, out: Complex | None = None) -> Complex:
+        """Return the places of nodes, or write them to `out`."""
+        places = np.zeros(len(nodes), np.complex128) if out is None else out
+        for block in blocks(len(nodes)):
+            pair, column = np.divmod(nodes[block], 2 * self.width - 1)
+            odd = column >= self.width
+            places.real[block] = (column - odd * (self.width - 0.5)) * self.pitch + self.origin.real
+            places.imag[block] = (2 * pair + odd) * self.height + self.origin.imag
+        return places
 
-    def labels(self, points: Complex, segments: Ints, left: Labels, right: Labels) -> Labels:
+    def labels(self, points: Complex, segments: Ints, left: Ints, right: Ints) -> Labels:
         """Find the region of every node: walking along a row, the label changes where the row crosses a segment.
 
         A sum over the differences of labels is all that it takes: no sorting, no search, no test of points in polygons. For nodes
@@ -106,7 +109,7 @@ class Lattice:
         x = p.real + (q.real - p.real) * (height - p.imag) / (q.imag - p.imag)
         column = np.ceil((x - self.origin.real) / self.pitch - 0.5 * (row % 2)).astype(np.int64)
         steps = np.zeros(self.count, np.int32)
-        np.add.at(steps, self.start(row) + column, change[of])
+        np.add.at(steps, self.start(row) + column, change[of].astype(np.int32))
         return np.cumsum(steps, dtype=np.int32)
 
     def around(self, centres: Complex, radius: Floats) -> Ints:
@@ -195,13 +198,19 @@ class Depth:
     def write(self, numbers: Ints, triangles: Ints, regions: Ints) -> None:
         """Write the triangles, with `numbers` for the nodes, and their labels into arrays of the right length."""
         w, done = self.lattice.width, 0
-        for exist, corners in ((self.up, (0, 1, w)), (self.down, (1, w + 1, w))):
-            f = np.flatnonzero(exist)
-            rows = slice(done, done + len(f))
-            for k, corner in enumerate(corners):
-                triangles[rows, k] = numbers[f + corner]
-            regions[rows] = self.labels[f + 1]
-            done += len(f)
+        for block in blocks(len(self.up)):
+            for exist, corners in ((self.up, (0, 1, w)), (self.down, (1, w + 1, w))):
+                f = np.flatnonzero(exist[block]) + block.start
+                rows = slice(done, done + len(f))
+                for k, corner in enumerate(corners):
+                    triangles[rows, k] = numbers[f + corner]
+                regions[rows] = self.labels[f + 1]
+                done += len(f)
 
     def __len__(self) -> int:
         return int(np.count_nonzero(self.up)) + int(np.count_nonzero(self.down))
+
+
+def blocks(count: int, size: int = 1 << 15) -> Iterator[slice]:
+    """Cut a large array into blocks that fit the cache: fetching memory for all of it, again and again, takes longer than the work."""
+    return (slice(start, min(start + size, count)) for start in range(0, count, size))

@@ -1,8 +1,9 @@
 """The net under the mesh: where an angle is too small, the triangles around it are refined by Ruppert's method.
 
-In: a mesh and the network it was made of. Out: the mesh with its bad places replaced. Only a *patch* of some rings of triangles around
-bad ones is triangulated anew, with its rim and the segments inside as constraints. Refinement may split segments that have the
-whole patch, or nothing, on both sides. If it splits another edge of the rim, neighbours outside would not fit: then the patch is made larger.
+In: a mesh and the network it was made of. Out: the mesh with its bad places replaced. Only a *patch*, some rings of triangles around
+the bad ones, is triangulated anew, with its rim and the segments in it as constraints. Refinement may split a segment that has
+nothing but the patch on its sides. If it splits another edge of the rim, the neighbours outside do not fit: then the patch is made
+larger.
 """
 
 from __future__ import annotations
@@ -58,7 +59,7 @@ def _grown(chosen: Bools, triangles: Ints, rings: int) -> Bools:
     for _ in range(rings):
         touched = np.zeros(triangles.max() + 1, bool)
         touched[triangles[chosen]] = True
-        grown = touched[triangles].any(axis=1)
+        grown: Bools = np.any(touched[triangles], axis=1)
         if np.array_equal(grown, chosen):
             break
         chosen = grown
@@ -72,7 +73,7 @@ def _walls(points: Complex, inside: Ints, triangles: Ints, codes: Ints, network:
     # An edge is known by its ends, lower first. The triangle that has it in this direction lies on its left.
     keys, edge = np.unique(np.minimum(start, stop) * n + np.maximum(start, stop), return_inverse=True)
     upward, code = start < stop, np.repeat(codes, 3)
-    left, right = np.zeros(len(keys), np.int32), np.zeros(len(keys), np.int32)
+    left, right = np.zeros(len(keys), np.int64), np.zeros(len(keys), np.int64)
     left[edge[upward]], right[edge[~upward]] = code[upward], code[~upward]
     found = np.bincount(edge)
     # Segments of the network with both ends in the patch, and the edges they are.
@@ -86,7 +87,8 @@ def _walls(points: Complex, inside: Ints, triangles: Ints, codes: Ints, network:
     at = at[segment]
     # A segment may be split if all its triangles are in the patch.
     sides = (network.left[segment] != 0).astype(np.int64) + (network.right[segment] != 0)
-    wall, splittable = found == 1, np.zeros(len(keys), bool)
+    wall: Bools = found == 1
+    splittable = np.zeros(len(keys), bool)
     wall[at] = True
     splittable[at] = (found[at] == sides) & (segment < own)
     lower, upper = np.divmod(keys[wall], n)

@@ -8,7 +8,7 @@ import numpy as np
 
 from img2tri.records import Floats, Ints
 from img2tri.triangles.grading import Sizes
-from img2tri.triangles.lattice import Complex, Labels
+from img2tri.triangles.lattice import Complex
 
 ROUND_UP = 0.4  # a segment of n + this many wanted lengths or more is divided into n + 1 parts
 
@@ -24,15 +24,15 @@ class Network:
     segments
         (s, 2) int64.
     left, right
-        (s,) int32, codes of the regions: small numbers, 0 for what is not meshed.
+        (s,) int64, codes of the regions: small numbers, 0 for what is not meshed.
     origin
         (s,) int64, which of the segments given by the caller each is, or is a part of; -1 for none.
     """
 
     points: Complex
     segments: Ints
-    left: Labels
-    right: Labels
+    left: Ints
+    right: Ints
     origin: Ints
 
     @property
@@ -55,8 +55,8 @@ class Network:
     def divided(self, sizes: Sizes) -> Network:
         """Divide segments that are too long for the wanted length, with parts that grow as it does. The points stay the first ones.
 
-        From either end to the middle the wanted length is taken as linear, from a to b. Then a stretch of length l holds l log(b / a) / (b - a)
-        wanted lengths, and the parts of equal share grow in geometric progression.
+        From either end to the middle the wanted length is taken as linear, from a to b. Then a stretch of length l holds
+        l log(b / a) / (b - a) wanted lengths, and parts of equal share grow in geometric progression.
         """
         at_points, at_middles = sizes.at(self.points), sizes.at(self.middles)
         first, last = at_points[self.segments].T
@@ -74,15 +74,13 @@ class Network:
         way = _geometric(within, at_middles[of[new]] / end) / 2
         start, stop = self.ends
         points = start[of[new]] + (stop - start)[of[new]] * np.where(head, way, 1 - way)
-        begin = self.segments[of, 0]
-        begin[new] = len(self.points) + np.arange(len(new))
-        end_ = self.segments[of, 1]
-        end_[new - 1] = begin[new]
-        return Network(np.concatenate([self.points, points]), np.stack([begin, end_], axis=1), self.left[of], self.right[of], self.origin[of])
+        segments = self.segments[of]
+        segments[new, 0] = segments[new - 1, 1] = len(self.points) + np.arange(len(new))
+        return Network(np.concatenate([self.points, points]), segments, self.left[of], self.right[of], self.origin[of])
 
-    def joined(self, points: Complex, segments: Ints, right: Labels) -> Network:
+    def joined(self, points: Complex, segments: Ints, right: Ints) -> Network:
         """Add points, and segments between these, with nothing meshed on their left."""
-        none = np.zeros(len(segments), np.int32)
+        none = np.zeros(len(segments), np.int64)
         return Network(
             points=np.concatenate([self.points, points]),
             segments=np.concatenate([self.segments, segments + len(self.points)]),

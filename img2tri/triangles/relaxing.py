@@ -10,8 +10,9 @@ They say all: the squares of the edges sum to |X|^2 + |Y|^2, the area is (|Y|^2 
 equilateral, corner a alone would have to move by -X, corner b by -w^2 X, corner c by -w X.
 
 `relaxed` moves every vertex by the mean of what its triangles ask, weighted by quality^-power: Jacobi steps down the energy
-sum of weight |X|^2, with a matrix C diag(weight) C* where C has a row per vertex and a column per triangle. With power 2 that is a quick smoother; large powers
-hear only the worst triangle of each vertex, which is hill climbing for the smallest angle, but in a few array operations for all vertices.
+sum of weight |X|^2, whose matrix is C diag(weight) C* with a row of C for each vertex and a column for each triangle. With power 2 that
+is a quick smoother. Large powers hear only the worst triangle of each vertex: hill climbing for the smallest angle, but in a few
+array operations for all vertices.
 """
 
 from __future__ import annotations
@@ -81,7 +82,7 @@ def relaxed(vertices: Complex, triangles: Ints, free: Bools, schedule: Schedule)
             weight = 1 / np.maximum(quality, FLATTEST)
             for _ in range(doublings):
                 weight *= weight
-            moved[where] += damping * (asked @ (weight * defect)) / (heard @ weight)
+            moved[where] += damping * np.asarray(asked @ (weight * defect)) / np.asarray(heard @ weight)
     return _guarded(vertices, moved, triangles)
 
 

@@ -1,14 +1,14 @@
-"""Adding and removing points where a vertex has too many or too few triangles.
+r"""Adding and removing points where a vertex has too many or too few triangles.
 
 No smoothing makes good triangles around an inner vertex that has 4 of them (angles about 90 degrees) or 8 (about 45). Here the
 former are taken away and the latter split in two; triangulated anew, this leaves vertices of 5, 6 and 7 triangles::
 
       o---o---o             o---o---o
-      |\\  |  /|             |  / \\  |
-      | \\ | / |             | /   \\ |
+      |\  |  /|             |  / \  |
+      | \ | / |             | /   \ |
       o---8---o     ->      o-6---6-o      split across the pair of opposite neighbours
-      | / | \\ |             | \\   / |      that best bear one more triangle each
-      |/  |  \\|             |  \\ /  |
+      | / | \ |             | \   / |      that best bear one more triangle each
+      |/  |  \|             |  \ /  |
       o---o---o             o---o---o
 """
 
@@ -30,7 +30,8 @@ def surplus(vertices: Complex, triangles: Ints) -> Floats:
     a, b, c = (vertices[corner] for corner in triangles.T)
     first, second = np.angle((c - a) / (b - a)), np.angle((a - b) / (c - b))
     angles = np.stack([first, second, np.pi - first - second], axis=1)
-    return np.bincount(triangles.ravel(), 1 - angles.ravel() / (np.pi / 3), minlength=len(vertices))
+    extra: Floats = np.bincount(triangles.ravel(), 1 - angles.ravel() / (np.pi / 3), minlength=len(vertices)).astype(np.float64)
+    return extra
 
 
 def repaired(vertices: Complex, triangles: Ints, free: Bools) -> tuple[Complex, Bools]:
@@ -48,7 +49,8 @@ def repaired(vertices: Complex, triangles: Ints, free: Bools) -> tuple[Complex, 
 def _rings(vertices: Complex, triangles: Ints, chosen: Bools) -> tuple[Ints, Ints, Ints]:
     """Return the neighbours of chosen vertices, counter-clockwise: entries (centre, neighbour), and the first entry of each centre.
 
-    Of vertices whose rings have a vertex in common, only those of lowest number are kept, so that each may be changed without regard to others.
+    Of vertices whose rings have a vertex in common only that of lowest number is kept, so that each may be changed without regard to
+    others.
     """
     triangle, corner = np.nonzero(chosen[triangles])
     centre, ring = triangles[triangle, corner], triangles[triangle, (corner + 1) % 3]

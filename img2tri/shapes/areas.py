@@ -1,0 +1,91 @@
+"""Coarse outlines that enclose what the dense ones enclose.
+
+A chord on a curve cuts a lens off: a disc drawn with edges of length h loses h^2 / 6 R^2 of its area, and a computation on it
+that much of its exactness. Moving the breaks outwards gives it back at no cost.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from img2tri.records import Bools, Floats, Ints
+from img2tri.shapes.drafts import Draft
+from img2tri.shapes.links import pixel_areas
+from img2tri.shapes.unrolling import cross
+
+AREA = 0.003  # of the smaller region beside a chain: what it may lack before it gets another break
+SMALL = 16  # pixels: the area of smaller regions is not looked after
+
+
+def keep_areas(d: Draft, *, tolerance: float) -> Draft:
+    """Move breaks sideways so that the chords enclose what the outlines enclose, chain by chain.
+
+    A chord on a curve cuts a lens off. Each break takes up half of the lenses beside it; what then is missing of a chain, since
+    some breaks cannot move, is shared evenly by the others. No break moves by more than half the tolerance at a time. Where
+    that leaves a small region with too much or too little, a break is added, to be moved the next time.
+    """
+    first, last = d.pieces
+    place, z = d.places, (d.outlines.points[:, 0] + 1j * d.outlines.points[:, 1])[d.outlines.indices]
+    swept = np.concatenate([[0], np.cumsum(cross(z[:-1], z[1:]) / 2)])
+    lens = swept[last] - swept[first] - cross(place[first], place[last]) / 2
+    lens += (cross(place[first], z[first]) + cross(z[last], place[last])) / 2
+    k, ring = len(z), d.links.rings
+    begin, end = d.outlines.starts[:-1][ring], d.outlines.starts[1:][ring] - 1
+    length = np.abs(place[last] - place[first])
+    area = np.bincount(first, lens, k) + np.bincount(last, lens, k)
+    width = np.bincount(first, length, k) + np.bincount(last, length, k)
+    ahead, behind = np.zeros(k, np.complex128), np.zeros(k, np.complex128)
+    ahead[first], behind[last] = place[last], place[first]
+    # The two ends of a ring are one break.
+    area[begin], width[begin], behind[begin] = area[begin] + area[end], width[begin] + width[end], behind[end]
+    movable = d.breaks & ~d.reset[d.outlines.indices] & (d.links.axis[d.outlines.indices] != 0) & (width > 0)
+    movable[end] = False
+
+    # Moving a break sideways by s sweeps s * width / 2.
+    shift = np.divide(area, width, out=np.zeros(k), where=movable)
+    chain = d.links.chain
+    missing = np.bincount(chain[first], lens, len(ring)) - np.bincount(chain, shift * width / 2, len(ring))
+    share = np.bincount(chain, np.where(movable, width / 2, 0), len(ring))
+    shift += np.where(movable, np.divide(missing, share, out=np.zeros_like(share), where=share > 0)[chain], 0)
+    outwards = -1j * (ahead - behind)
+    step = np.clip(shift, -tolerance / 2, tolerance / 2)
+    moves = step * outwards / np.maximum(np.abs(outwards), 1e-12)
+    moves[end] = moves[begin]
+
+    lacking = np.abs(np.bincount(chain[first], lens, len(ring)) - np.bincount(chain, step * width / 2, len(ring)))
+    breaks = d.breaks.copy()
+    breaks[_middles(d, first, last, np.abs(lens), lacking > AREA * _smaller_side(d))] = True
+    return replace(d, breaks=breaks, moved=d.moved + moves, measured=np.full(k, -1), tested=np.full(k, -1))
+
+
+def area_error(d: Draft) -> float:
+    """Greatest relative difference between what chords and outlines enclose, over the regions of more than `SMALL` pixels."""
+    first, last = d.pieces
+    z, chain = d.outlines.points[:, 0] + 1j * d.outlines.points[:, 1], d.links.chain
+    dense = z[d.outlines.indices]
+    runs = np.concatenate([[0], np.cumsum(cross(dense[:-1], dense[1:]) / 2)])
+    difference = cross(d.places[first], d.places[last]) / 2 - (runs[last] - runs[first])
+    size = len(d.outlines.labels)
+    found = np.bincount(d.outlines.left[chain[first]], difference, size) - np.bincount(d.outlines.right[chain[first]], difference, size)
+    areas = pixel_areas(d.links)
+    big = np.flatnonzero(areas > SMALL)
+    big = big[big > 0]
+    return float(np.max(np.abs(found[big]) / areas[big], initial=0.0))
+
+
+def _smaller_side(d: Draft) -> Floats:
+    """Area (c,) of the smaller of the two regions beside each chain."""
+    areas = pixel_areas(d.links)
+    areas[0] = np.inf
+    return np.asarray(np.minimum(areas[d.outlines.left], areas[d.outlines.right]))
+
+
+def _middles(d: Draft, first: Ints, last: Ints, lens: Floats, chosen: Bools) -> Ints:
+    """Middle entry of the piece with the greatest lens, in each of the chosen chains that have one to split."""
+    chain = d.links.chain[first]
+    able = np.flatnonzero(chosen[chain] & (last - first > 1))
+    able = able[np.lexsort((-lens[able], chain[able]))]
+    able = able[np.flatnonzero(np.diff(chain[able], prepend=-1))]
+    return (first[able] + last[able]) // 2

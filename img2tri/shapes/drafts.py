@@ -1,0 +1,103 @@
+"""Outlines in coarsening: the dense outlines, and which of their points are kept, moved where."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from img2tri.records import Bools, Floats, Ints, Outlines
+from img2tri.shapes.links import Links
+from img2tri.shapes.unrolling import Points
+
+RING = 8  # a ring keeps at least so many pieces, or all its crossings
+
+
+@dataclass(frozen=True, eq=False)
+class Draft:
+    """Outlines in coarsening.
+
+    Attributes
+    ----------
+    outlines, links
+        The dense outlines, and what the places of their points may be.
+    dense
+        (n,) complex, the dense points.
+    reset
+        (n,) bool, the points that go back towards the middle of their links.
+    kept
+        (n,) bool, corners that must not.
+    breaks
+        (k,) bool, the entries of `outlines.indices` that are breaks.
+    moved
+        (k,) complex, how far a break lies from its dense point.
+    measured, tested
+        (k,) int64, the last entry of the piece that begins at an entry and whose bulge is known, that passed all tests.
+    bulge
+        (k,) float64, at the first entry of each measured piece the greatest distance between the run and its chord.
+    """
+
+    outlines: Outlines
+    links: Links
+    dense: Points
+    reset: Bools
+    kept: Bools
+    breaks: Bools
+    moved: Points
+    measured: Ints
+    tested: Ints
+    bulge: Floats
+
+    @property
+    def pieces(self) -> tuple[Ints, Ints]:
+        """First and last entry of each piece."""
+        at = np.flatnonzero(self.breaks)
+        chain = self.links.chain[at]
+        same = chain[1:] == chain[:-1]
+        return at[:-1][same], at[1:][same]
+
+    @property
+    def places(self) -> Points:
+        """(k,) where the entries lie, breaks where they were moved to."""
+        return self.dense[self.outlines.indices] + self.moved
+
+    def coarse(self) -> Outlines:
+        """Return the outlines made of the breaks only."""
+        o, at = self.outlines, np.flatnonzero(self.breaks)
+        points, first, index = np.unique(o.indices[at], return_index=True, return_inverse=True)
+        place = self.places[at[first]]
+        starts = np.searchsorted(at, o.starts)
+        return Outlines(np.stack([place.real, place.imag], axis=1), index, starts, o.left, o.right, o.labels)
+
+
+def draft(outlines: Outlines, links: Links, *, spacing: float, keep_corners: bool = False) -> Draft:
+    """Set breaks evenly along each chain, about `spacing` px apart.
+
+    With `keep_corners` no corner of an outline is ever blunted.
+    """
+    dense = outlines.points[:, 0] + 1j * outlines.points[:, 1]
+    k, chain, starts = len(outlines.indices), links.chain, outlines.starts
+    z = dense[outlines.indices]
+    step = np.abs(np.diff(z, prepend=z[:1]))
+    step[starts[:-1]] = 0
+    arc = np.cumsum(step)
+    begin, length = arc[starts[:-1]], arc[starts[1:] - 1] - arc[starts[:-1]]
+    size = np.diff(starts) - 1
+    least = np.where(links.rings, np.minimum(RING, size), 1)
+    count = np.clip(np.round(length / spacing).astype(np.int64), least, size)
+
+    # Even places along the arc; each is taken by the nearest dense point, moved there.
+    which = np.repeat(np.arange(len(count)), count)
+    number = np.arange(len(which)) - np.repeat(np.cumsum(count) - count, count)
+    wanted = begin[which] + length[which] * number / count[which]
+    after = np.clip(np.searchsorted(arc, wanted), starts[which] + 1, starts[which + 1] - 1)
+    at = after - (wanted - arc[after - 1] < arc[after] - wanted)
+    share = (wanted - arc[after - 1]) / np.maximum(arc[after] - arc[after - 1], 1e-12)
+    place = z[after - 1] + share * (z[after] - z[after - 1])
+    breaks, moved = np.zeros(k, bool), np.zeros(k, np.complex128)
+    inner = (number > 0) & (at > starts[which]) & (at < starts[which + 1] - 1)
+    moved[at[inner]] = (place - z[at])[inner]
+    breaks[at[inner]] = True
+    breaks[starts[:-1]] = breaks[starts[1:] - 1] = True
+    kept = links.corner if keep_corners else np.zeros(len(dense), bool)
+    return Draft(outlines, links, dense, np.zeros(len(dense), bool), kept, breaks, moved, np.full(k, -1), np.full(k, -1), np.zeros(k))
