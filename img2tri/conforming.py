@@ -58,20 +58,21 @@ def conform(
     corners: str = "auto",
     keep_area: bool = True,
     seed: int = 0,
-    progress: Callable[[str, float], None] = lambda stage, fraction: None,
+    progress: Callable[[str, float], None] | None = None,
 ) -> Made:
     """Mesh all regions of an image, given its dense outlines; lengths in px."""
     from img2tri.triangles.delaunay import NetworkError
     from img2tri.triangles.filling import fill
 
-    progress("spacing", 0.3)
+    tell = progress or (lambda *_: None)
+    tell("spacing", 0.3)
     coarse = settle(draft(outlines, links, spacing=edge_length, keep_corners=corners == "keep"), tolerance=tolerance)
     for _ in range(AREA_ROUNDS if keep_area else 0):
         if area_error(coarse) <= AREA_ERROR:
             break
         coarse = settle(keep_areas(coarse, tolerance=tolerance), tolerance=tolerance)
     for attempt in range(ATTEMPTS):
-        progress("triangles", 1 - 0.6 * 0.7**attempt)
+        tell("triangles", 1 - 0.6 * 0.7**attempt)
         chains = coarse.coarse()
         segments, left, right = chains.segments
         try:

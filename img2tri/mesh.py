@@ -186,7 +186,7 @@ class TriangleMesh:
         )  # fmt: skip
 
     def _data(self) -> dict[str, Any]:
-        """What objects and files carry along: the height of the plane, q of each triangle, how the mesh was made."""
+        """Collect what objects and files carry along: the height of the plane, q of each triangle, how the mesh was made."""
         from img2tri.triangles.quality import measure
 
         texts = {} if self.origin is None else {"img2tri": json.dumps({"recipe": self.origin.recipe, **self.origin.settings}, default=str)}

@@ -151,7 +151,7 @@ def unstructured_mesh(
         _contour_mesh,
         edge_length=length,
         n_boundary=None if n_boundary_points is None else integer("n_boundary_points", n_boundary_points, least=3),
-        n_interior=n_interior_points,
+        n_interior=None if n_interior_points is None else integer("n_interior_points", n_interior_points),
         min_distance=CLOSENESS * length if min_distance is None else min_distance,
         min_distance_to_boundary=CLOSENESS * length if min_distance_to_boundary is None else min_distance_to_boundary,
     )

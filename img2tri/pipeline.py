@@ -1,6 +1,6 @@
 """mesh_image: every stage in order. The table of contents of the library.
 
-    image -> labels -> outlines -> points -> triangles -> mesh
+image -> labels -> outlines -> points -> triangles -> mesh
 """
 
 from __future__ import annotations
@@ -164,7 +164,7 @@ def mesh_image(
     tell("outlines", 0.2)
     outlines, links = trace_outlines(zones, frame, connectivity=connectivity, corners=corners, outline=outline)
     if len(outlines.labels) == 1:
-        raise ImageError(f"image: expected pixels to mesh, found none{_above(zones.threshold)}")
+        raise ImageError(f"image: expected pixels to mesh, found none{_advice(zones.threshold)}")
 
     tell("points", 0.3)
     within = frame.length("tolerance", tolerance) / frame.pixel
@@ -208,8 +208,8 @@ def mesh_image(
     mesh = TriangleMesh(
         frame.world(made.vertices), made.triangles, outlines.labels[made.regions], frame, names or {},
         Origin(
-            recipe, settings, outlines, *pixels_beside(links), _expected_areas(zones, outlines, links), counted=made.counted,
-            **({"tolerance": within, "min_angle": min_angle} if recipe == "conforming" else {}),
+            recipe, settings, outlines, *pixels_beside(links), areas=_expected_areas(zones, outlines, links), counted=made.counted,
+            tolerance=within if recipe == "conforming" else None, min_angle=min_angle if recipe == "conforming" else None,
         ),
     )  # fmt: skip
 
@@ -227,16 +227,16 @@ def _check_paper_options(recipe: str, paper: PaperOptions) -> None:
     unknown = sorted(set(paper) - set(PaperOptions.__annotations__))
     if unknown:
         raise TypeError(f"mesh_image() got an unexpected keyword argument {unknown[0]!r}")
-    known = {"conforming": set(), "structured": {"step"}, "unstructured": set(PaperOptions.__annotations__) - {"step"}}[recipe]
+    known: set[str] = {"conforming": set(), "structured": {"step"}, "unstructured": set(PaperOptions.__annotations__) - {"step"}}[recipe]
     for name in sorted(set(paper) - known):
         raise ParameterError(f"{name}: not an option of recipe {recipe!r}; leave it out, or choose another recipe")
 
 
-def _above(level: Level | None) -> str:
+def _advice(level: Level | None) -> str:
     """Say in an error where it was looked."""
     if level is None:
         return ", only background; see background="
-    return f" above the threshold {level.value:g} ({level.how}); try another threshold=, or invert=True"
+    return f" above the threshold {level.value:g}; try another threshold, or invert"
 
 
 def _expected_areas(zones: Zones, outlines: Outlines, links: Links) -> Floats:

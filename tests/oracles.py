@@ -66,7 +66,8 @@ def mesh_topology(triangles):
 
 def pixel_neighbours(labels, background=0):
     """Pairs of meshed labels that share a pixel side."""
-    pairs = np.concatenate([np.stack([labels[1:].ravel(), labels[:-1].ravel()]), np.stack([labels[:, 1:].ravel(), labels[:, :-1].ravel()])], axis=1)
+    upright, flat = (labels[1:], labels[:-1]), (labels[:, 1:], labels[:, :-1])
+    pairs = np.concatenate([np.stack([a.ravel(), b.ravel()]) for a, b in (upright, flat)], axis=1)
     pairs = np.sort(pairs, axis=0)
     keep = pairs[0] != pairs[1]
     if background is not None:
@@ -80,7 +81,7 @@ def mesh_neighbours(triangles, regions):
 
 def pixel_sides(labels, background=0):
     """Sides between pixels of different regions as segments (k, 2, 2), y up."""
-    h, w = labels.shape
+    h = labels.shape[0]
     outside = np.iinfo(np.int64).max if background is None else background
     p = np.pad(labels.astype(np.int64), 1, constant_values=outside)
     r, c = np.nonzero(p[1:, 1:-1] != p[:-1, 1:-1])

@@ -71,7 +71,7 @@ MASKS = {
     "disc": disc(),
     "disc cut by the frame": disc(40, 15.0, (3.3, 20.2)),
     "ring": disc(50, 22) - disc(50, 12),
-    "dent with an island": drawn("######.....#######".replace("#", "1"), "#######.#.########".replace("#", "1"), "########.#########".replace("#", "1")),
+    "dent with an island": drawn("111111.....1111111", "1111111.1.11111111", "11111111.111111111"),
     "small ring": drawn(".11.", "1.11", ".111"),
 }
 

@@ -23,7 +23,8 @@ ORDER = [
     {"errors"},
     {"records"},
     set(ROOMS),
-    {"conforming", "paper", "report"},
+    {"conforming", "paper", "judging"},
+    {"report"},
     {"mesh"},
     {"pipeline"},
     {"options"},
@@ -32,13 +33,14 @@ ORDER = [
 ]
 # numpy is at home everywhere.
 LIBRARIES = {
-    "raster": {"cv2", "PIL", "tifffile"},
+    "raster": {"cv2", "PIL", "tifffile", "pydicom", "nibabel", "scipy"},  # scipy joins runs of pixels to components
     "shapes": {"shapely", "scipy", "cv2"},  # cv2 traces the paper's contours
     "triangles": {"scipy", "igl", "pythoncdt", "shapely"},
     "views": {"trimesh", "pyvista", "vtkmodules", "matplotlib"},
     "conforming": set(),
     "paper": {"shapely"},
-    "report": {"shapely", "scipy"},
+    "judging": {"shapely", "scipy"},
+    "report": set(),
     "mesh": {"shapely", "trimesh", "pyvista", "matplotlib"},  # for types only
     "cli": {"rich"},
 }

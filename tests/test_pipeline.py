@@ -381,7 +381,7 @@ def test_progress_tells_the_stages_in_order(recipe):
 
 @pytest.mark.parametrize("stage", ["reading", "labels", "outlines", "triangles", "smoothing"])
 def test_raising_in_progress_cancels(stage):
-    class Cancelled(Exception):  # noqa: N818
+    class Cancelled(Exception):
         pass
 
     told = []
@@ -507,7 +507,7 @@ REFUSED = {
     "black, gray": (np.zeros((9, 9), np.uint8), {}, ImageError, "image: expected pixels to mesh, found none above the threshold 0"),
     "all background": (np.full((9, 9), 3), {"labels": True, "background": 3}, ImageError, "image: expected pixels to mesh, found none"),
     "white, inverted": (np.ones((9, 9), bool), {"invert": True}, ImageError, "image: expected pixels to mesh, found none"),
-    "too dark": (DISC * 200, {"threshold": 240}, ImageError, "found none above the threshold 240; try another threshold, or invert"),
+    "too dark": (DISC * 200, {"threshold": 240}, ImageError, "above the threshold 240 (given); try another threshold=, or invert=True"),
     "too dark for the paper": (DISC * 200, {"recipe": "structured"}, ImageError, "none above the threshold 240"),
     "one value": (np.ones((9, 9), np.uint8), {"threshold": "otsu"}, ImageError, "threshold: 'otsu' expected at least two values"),
     "labels not said": (MANY, {}, ImageError, "labels=True makes each value a region of its own"),

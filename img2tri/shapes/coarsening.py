@@ -130,4 +130,4 @@ def _to_segment(p: Points, a: Points, b: Points) -> Floats:
     """Distance of points to segments."""
     along = b - a
     share = np.clip(((p - a) * along.conj()).real / np.maximum(np.abs(along) ** 2, 1e-300), 0, 1)
-    return np.abs(p - a - share * along)
+    return np.asarray(np.abs(p - a - share * along))

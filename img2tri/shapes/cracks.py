@@ -142,11 +142,11 @@ def changes(flat: NDArray[Any], shift: int) -> Ints:
     differ = np.flatnonzero(here != there)
     per_word = 8 // size
     candidates = np.concatenate([(differ[:, None] * per_word + np.arange(per_word)).reshape(-1), np.arange(words * per_word, n)])
-    return candidates[flat[candidates] != flat[candidates + shift]]
+    return np.asarray(candidates[flat[candidates] != flat[candidates + shift]])
 
 
 def _numbers(seen: NDArray[Any], background: int | None) -> Ints:
-    """Number the labels that occur 1, 2, ... in their order, the background 0."""
+    """Give the labels that occur the numbers 1, 2, ... in their order, the background 0."""
     meshed = np.ones(len(seen), bool) if background is None else seen.astype(np.int64) != background
     return np.where(meshed, np.cumsum(meshed), 0)
 

@@ -64,7 +64,7 @@ class Draft:
     def coarse(self) -> Outlines:
         """Return the outlines made of the breaks only."""
         o, at = self.outlines, np.flatnonzero(self.breaks)
-        points, first, index = np.unique(o.indices[at], return_index=True, return_inverse=True)
+        _, first, index = np.unique(o.indices[at], return_index=True, return_inverse=True)
         place = self.places[at[first]]
         starts = np.searchsorted(at, o.starts)
         return Outlines(np.stack([place.real, place.imag], axis=1), index, starts, o.left, o.right, o.labels)
@@ -76,7 +76,7 @@ def draft(outlines: Outlines, links: Links, *, spacing: float, keep_corners: boo
     With `keep_corners` no corner of an outline is ever blunted.
     """
     dense = outlines.points[:, 0] + 1j * outlines.points[:, 1]
-    k, chain, starts = len(outlines.indices), links.chain, outlines.starts
+    k, starts = len(outlines.indices), outlines.starts
     z = dense[outlines.indices]
     step = np.abs(np.diff(z, prepend=z[:1]))
     step[starts[:-1]] = 0

@@ -119,4 +119,4 @@ def swept(z: Points, s: Sliding) -> Floats:
     area = np.zeros(len(p))
     area[:-1] = cross(p[:-1], p[1:]) / 2
     area[s.starts[1:] - 1] = 0
-    return np.bincount(s.chain, area, len(s.rings))
+    return np.asarray(np.bincount(s.chain, area, len(s.rings)), np.float64)

@@ -137,7 +137,7 @@ def lay_out(cracks: Cracks, frame: Frame) -> Links:
         node=nodes,
         room=np.concatenate([np.zeros(n), np.where(inside, REACH * (width + 1j * height), 0)]),
         pixel=complex(width, height),
-        swept=np.bincount(chains.chain, cross(a, b) / 2, len(chains.rings)),
+        swept=np.asarray(np.bincount(chains.chain, cross(a, b) / 2, len(chains.rings)), np.float64),
     )
 
 

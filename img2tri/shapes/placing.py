@@ -1,4 +1,4 @@
-"""Links -> dense outlines: where between two pixel centres does the outline pass?
+"""Links -> dense outlines: where between two pixel centres the outline passes.
 
 Any place is right as far as topology goes (see `links`), so all places can be chosen well: by the gray values where there
 are any (`levels`), exactly at corners (`corners`), and by smoothing along the arc within what these leave open (`fitting`).
@@ -38,6 +38,8 @@ def place(
         True: corners stay sharp; False: they are rounded as all else is.
     """
     links = lay_out(cracks, frame)
+    if not len(links.crack):
+        return links.outlines(links.middle), links
     shift, slack = _known(links, frame, gray, level)
     if corners:
         bends, sharp = find_corners(_sliding(links, links.middle, shift, slack), links.head, REACH * links.pixel)

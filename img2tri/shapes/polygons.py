@@ -108,7 +108,7 @@ def polygons(outlines: Outlines) -> tuple[Ints, NDArray[Any]]:
 def enclosed_areas(outlines: Outlines) -> Floats:
     """Return the area (r,) each region number has within its outlines; entry 0 is 0."""
     r = rings(outlines)
-    return np.bincount(r.regions, r.areas, len(outlines.labels))
+    return np.asarray(np.bincount(r.regions, r.areas, len(outlines.labels)), np.float64)
 
 
 def region_polygons(outlines: Outlines) -> dict[int, Polygon | MultiPolygon]:

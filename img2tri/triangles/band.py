@@ -64,6 +64,8 @@ def band(network: Network, sizes: Sizes, lattice: Lattice, rings: int) -> Band:
     core = labels.copy()
     core[busy] = 0
     for _ in range(rings):
+        if not core.any():
+            break
         core = lattice.eroded(core)
     depth = lattice.depth(core)
     between = np.flatnonzero((labels != 0) & ~depth.nodes())

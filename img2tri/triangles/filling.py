@@ -101,7 +101,7 @@ def fill(
         return points.copy(), np.zeros((0, 3), np.int64), np.zeros(0, np.int64)
     given, names = _network(points, segments, left, right)
     sizes = _sizes(given, edge_length, gradation, size)
-    network = given if sizes.uniform else given.divided(sizes)
+    network = given.divided(sizes)
     lattice = Lattice.over(network.points, edge_length, _shift(seed))
     try:
         # To mend the mesh may take splitting an edge of the depth, which cannot be: then again with less depth, or none.

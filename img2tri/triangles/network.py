@@ -64,6 +64,8 @@ class Network:
         first_share, last_share = half / _log_mean(first, at_middles), half / _log_mean(last, at_middles)
         shares = first_share + last_share
         parts = np.maximum(1, np.ceil(shares - ROUND_UP)).astype(np.int64)
+        if not len(parts) or parts.max() == 1:
+            return self
         of, part = runs(parts)
         new = np.flatnonzero(part > 0)
         share = (part / parts[of] * shares[of])[new]

@@ -102,14 +102,15 @@ def climbed(vertices: Complex, triangles: Ints, free: Bools, target: float = TAR
 
 
 def _guarded(before: Complex, after: Complex, triangles: Ints) -> Complex:
-    """Put back the vertices of triangles that became bad: with an angle that fell below 30 degrees or below the worst before."""
+    """Shorten the moves of vertices of triangles that became bad: whose angle fell below 30 degrees or below the worst before."""
     tangents = smallest_tangents(before, triangles)
     least = np.minimum(tangents, max(SAFE, tangents.min(initial=np.inf)))
-    after = after.copy()
+    part = np.ones(len(before))
     while True:
-        worse = smallest_tangents(after, triangles) < least - 1e-12
+        moved = before + part * (after - before)
+        worse = smallest_tangents(moved, triangles) < least - 1e-12
         back = np.unique(triangles[worse])
-        back = back[after[back] != before[back]]
+        back = back[part[back] > 0]
         if not len(back):
-            return after
-        after[back] = before[back]
+            return moved
+        part[back] = np.where(part[back] > 0.2, part[back] / 2, 0)  # a half, a quarter, an eighth, none

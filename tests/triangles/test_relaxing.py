@@ -1,0 +1,129 @@
+"""Relaxing: shapes of triangles as complex numbers, moves that only help, and repairs."""
+
+from __future__ import annotations
+
+import numpy as np
+import oracles
+import pytest
+from scipy.spatial import Delaunay
+
+from img2tri.triangles.grading import pairs
+from img2tri.triangles.relaxing import ANNEAL, DEFECT, SMOOTH, climbed, relaxed, shapes, smallest_angles
+from img2tri.triangles.repairing import repaired, surplus
+
+TURN = np.exp(1j * np.pi / 3)
+
+
+def rough(seed, n=300):
+    """A Delaunay mesh of random points in a square, and which of its vertices are inside."""
+    rng = np.random.default_rng(seed)
+    side = np.linspace(0, 1, 18)[:-1]
+    frame = np.concatenate([side, 1 + 1j * side, 1 - side + 1j, 1j * (1 - side)])
+    z = np.concatenate([frame, rng.uniform(0.02, 0.98, n) + 1j * rng.uniform(0.02, 0.98, n)])
+    triangles = Delaunay(pairs(z)).simplices.astype(np.int64)
+    a = oracles.areas(pairs(z), triangles)
+    triangles[a < 0] = triangles[a < 0][:, ::-1]
+    return z, triangles[np.abs(a) > 1e-12], np.arange(len(z)) >= len(frame)
+
+
+def test_an_equilateral_triangle_has_no_defect():
+    defect, quality = shapes(np.array([2j, 2j + 3, 2j + 3 * TURN]), np.array([[0, 1, 2]]))
+    assert abs(defect[0]) < 1e-12
+    assert quality[0] == pytest.approx(1)
+
+
+def test_quality_is_area_over_squares_of_edges():
+    z, triangles, _ = rough(0)
+    p = pairs(z)[triangles]
+    squares = sum(((p[:, k] - p[:, k - 1]) ** 2).sum(axis=1) for k in range(3))
+    assert shapes(z, triangles)[1] == pytest.approx(4 * 3**0.5 * oracles.areas(pairs(z), triangles) / squares)
+    assert shapes(z, triangles[:, ::-1])[1] == pytest.approx(-shapes(z, triangles)[1])
+
+
+@pytest.mark.parametrize("corner", [0, 1, 2])
+def test_moving_one_corner_by_its_defect_makes_the_triangle_equilateral(corner):
+    z = np.array([0, 4 + 1j, 1 + 2j])
+    defect, _ = shapes(z, np.array([[0, 1, 2]]))
+    z[corner] -= defect[0] * DEFECT.conj()[corner]
+    assert oracles.angles(pairs(z), np.array([[0, 1, 2]])) == pytest.approx(60)
+
+
+def test_smallest_angles():
+    z, triangles, _ = rough(1)
+    assert smallest_angles(z, triangles) == pytest.approx(oracles.angles(pairs(z), triangles).min(axis=1), abs=1e-6)
+    assert (smallest_angles(z, triangles[:, ::-1]) < 0).all()
+
+
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("schedule", [SMOOTH, ANNEAL, ((7, 1.0, 5),), ((1, 1.9, 20),)])
+def test_relaxing_never_lowers_the_worst_angle(seed, schedule):
+    z, triangles, free = rough(seed)
+    before = z.copy()
+    moved = relaxed(z, triangles, free, schedule)
+    assert (z == before).all(), "the argument was changed"
+    assert (moved[~free] == z[~free]).all()
+    assert oracles.angles(pairs(moved), triangles).min() >= oracles.angles(pairs(z), triangles).min() - 1e-6
+    assert (oracles.areas(pairs(moved), triangles) > 0).all()
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_relaxing_makes_triangles_better(seed):
+    z, triangles, free = rough(seed)
+    smooth = relaxed(z, triangles, free, SMOOTH)
+    assert shapes(smooth, triangles)[1].mean() > shapes(z, triangles)[1].mean() + 0.02
+    annealed = relaxed(smooth, triangles, free, ANNEAL)
+    assert np.percentile(smallest_angles(annealed, triangles), 5) > np.percentile(smallest_angles(smooth, triangles), 5)
+
+
+def test_climbing_lifts_the_worst_angle_and_moves_nothing_far_away():
+    z, triangles, free = rough(5)
+    z = relaxed(z, triangles, free, SMOOTH)
+    z = relaxed(z, triangles, free, ANNEAL)
+    lifted = climbed(z, triangles, free)
+    assert smallest_angles(lifted, triangles).min() > smallest_angles(z, triangles).min()
+    assert (lifted == z).sum() > len(z) / 3
+    good = climbed(z, triangles, free, target=0.0)
+    assert (good == z).all()
+
+
+def wheel(spokes):
+    turn = np.exp(2j * np.pi * np.arange(spokes) / spokes)
+    i = np.arange(spokes)
+    triangles = np.stack([np.full(spokes, spokes), i, (i + 1) % spokes], axis=1)
+    return np.concatenate([turn, [0]]), triangles, i.size == np.arange(spokes + 1)
+
+
+@pytest.mark.parametrize("spokes", [3, 4, 5, 6, 7, 8, 9, 12])
+def test_the_hub_of_a_wheel(spokes):
+    z, triangles, free = wheel(spokes)
+    assert surplus(z, triangles)[-1] == pytest.approx(spokes - 6)
+    added, stays = repaired(z, triangles, free)
+    assert stays[:-1].all()
+    assert stays[-1] == (5 <= spokes <= 7)
+    assert len(added) == (2 if spokes >= 8 else 0)
+    if len(added):
+        assert added.sum() == pytest.approx(0, abs=0.3)
+        assert (np.abs(added) < 0.7).all()
+
+
+def test_an_inner_vertex_in_no_triangle_goes_and_fixed_ones_stay():
+    z, triangles, free = wheel(4)
+    assert repaired(z, triangles, np.zeros(5, bool))[1].all()
+    lonely = np.concatenate([z, [3]])
+    assert not repaired(lonely, triangles, np.append(free, True))[1][-1]
+    assert repaired(lonely, triangles, np.append(free, False))[1][-1]
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_repairing_and_triangulating_anew_leaves_fewer_bad_vertices(seed):
+    z, triangles, free = rough(seed)
+    z = relaxed(z, triangles, free, SMOOTH)
+    added, stays = repaired(z, triangles, free)
+    points = np.concatenate([z[stays], added])
+    anew = Delaunay(pairs(points)).simplices
+    a = oracles.areas(pairs(points), anew)
+    anew = anew[np.abs(a) > 1e-12]
+    bad = np.abs(surplus(z, triangles)[free]) > 1.5
+    turned = oracles.areas(pairs(points), anew)[:, None] < 0
+    left = np.abs(surplus(points, np.where(turned, anew[:, ::-1], anew))[68:]) > 1.5
+    assert left.sum() < bad.sum()
