@@ -14,8 +14,9 @@ from img2tri.errors import ImageError, ParameterError, choice, finite, integer
 from img2tri.mesh import TriangleMesh
 from img2tri.paper import paper_mesh
 from img2tri.raster.binarizing import Level
+from img2tri.raster.cropping import crop as cropped
 from img2tri.raster.reading import read
-from img2tri.raster.zones import Zones, find_zones
+from img2tri.raster.zones import Zones, cleaned, find_zones
 from img2tri.records import Floats, Frame, Origin, Outlines
 from img2tri.shapes.links import Links, pixel_areas, pixels_beside
 from img2tri.shapes.polygons import enclosed_areas
@@ -58,6 +59,9 @@ def mesh_image(
     spacing: float | Sequence[float] | str | None = None,
     origin: str | Sequence[float] = "lower",
     page: int = 0,
+    crop: Sequence[float] | None = None,
+    min_area: float | str | None = None,
+    largest: bool = False,
     max_pixels: int = 2**28,
     names: dict[int, str] | None = None,
     seed: int = 0,
@@ -113,6 +117,13 @@ def mesh_image(
         corner. (x, y): the place of the lower-left corner.
     page, max_pixels
         Which image of a file with several; the most pixels a file may have.
+    crop
+        (left, bottom, right, top) in world units: only that part of the image is meshed, where it lies.
+    min_area
+        Specks smaller than this are dropped and holes filled, in world units squared or "20px2"; in label maps they become
+        part of the neighbour they share most with. None removes nothing. What was removed is in the report.
+    largest
+        True: only the largest component of each region is kept.
     names
         Names for regions, such as ``{1: "bone"}``.
     seed
@@ -153,13 +164,15 @@ def mesh_image(
         raise ParameterError(f"connectivity: expected 4 or 8, found {connectivity!r}")
 
     tell("reading", 0.0)
-    picture = read(image, spacing=spacing, origin=origin, page=page, max_pixels=max_pixels)
+    picture = cropped(read(image, spacing=spacing, origin=origin, page=page, max_pixels=max_pixels), crop)
     frame = picture.frame
 
     tell("labels", 0.1)
     if recipe != "conforming" and threshold is None and not labels:
         threshold = PAPER_THRESHOLD
     zones = find_zones(picture, threshold=threshold, labels=labels, background=background, invert=invert)
+    speck = None if min_area is None else frame.area("min_area", min_area) / math.prod(frame.spacing)
+    zones, removed = cleaned(zones, min_area=speck, largest=largest, connectivity=connectivity)
 
     tell("outlines", 0.2)
     outlines, links = trace_outlines(zones, frame, connectivity=connectivity, corners=corners, outline=outline)
@@ -198,6 +211,9 @@ def mesh_image(
         "min_angle": min_angle,
         "tolerance": within * frame.pixel,
         "keep_area": keep_area,
+        "crop": picture.notes.get("crop"),
+        "min_area": min_area,
+        "largest": largest,
         "smoothing": smoothing,
         "iterations": iterations,
         "spacing": frame.spacing,
@@ -208,7 +224,8 @@ def mesh_image(
     mesh = TriangleMesh(
         frame.world(made.vertices), made.triangles, outlines.labels[made.regions], frame, names or {},
         Origin(
-            recipe, settings, outlines, *pixels_beside(links), areas=_expected_areas(zones, outlines, links), counted=made.counted,
+            recipe, settings, outlines, *pixels_beside(links), areas=_expected_areas(zones, outlines, links),
+            counted={**made.counted, "removed": removed},
             tolerance=within if recipe == "conforming" else None, min_angle=min_angle if recipe == "conforming" else None,
         ),
     )  # fmt: skip
@@ -236,7 +253,7 @@ def _advice(level: Level | None) -> str:
     """Say in an error where it was looked."""
     if level is None:
         return ", only background; see background="
-    return f" above the threshold {level.value:g}; try another threshold, or invert"
+    return f" above the threshold {level.value:g} ({level.how}); try another threshold=, or invert=True"
 
 
 def _expected_areas(zones: Zones, outlines: Outlines, links: Links) -> Floats:

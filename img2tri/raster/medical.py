@@ -66,14 +66,7 @@ def decode_dicom(path: Path, page: int, max_pixels: int) -> Decoded:
         raise FileError(f"image: {str(path)!r} is no DICOM file with an image in it, or it is truncated")
     pages = int(data.get("NumberOfFrames") or 1)
     notes = {"format": "DICOM"} | check_page(path, page, pages, data.Columns, data.Rows, max_pixels)
-    if "TransferSyntaxUID" not in data.file_meta:  # files from before there were headers
-        implicit = data.original_encoding[0]
-        data.file_meta.TransferSyntaxUID = library.uid.ImplicitVRLittleEndian if implicit else library.uid.ExplicitVRLittleEndian
-    decoder = library.pixels.get_decoder(data.file_meta.TransferSyntaxUID)
-    if not decoder.is_available:
-        needed = "; ".join(decoder.missing_dependencies)
-        raise FileError(f"image: {str(path)!r} is compressed ({decoder.UID.name}), for which pydicom needs a plugin: {needed}")
-    values = np.asarray(library.pixels.pixel_array(data, index=page))
+    values = _stored(library, path, data, page, pages)
     notes["photometric"] = str(data.get("PhotometricInterpretation", ""))
     if notes["photometric"] == "PALETTE COLOR":
         notes["palette"] = _palette(library, data, int(values.max()) + 1)
@@ -87,6 +80,21 @@ def decode_dicom(path: Path, page: int, max_pixels: int) -> Decoded:
         if size is not None:
             return values, notes | {"spacing_from": tag}, size
     return values, notes, None
+
+
+def _stored(library: Any, path: Path, data: Any, page: int, pages: int) -> Pixels:
+    """Return the stored values of a frame."""
+    if "TransferSyntaxUID" not in data.file_meta:  # files from before there were headers
+        implicit = data.original_encoding[0]
+        data.file_meta.TransferSyntaxUID = library.uid.ImplicitVRLittleEndian if implicit else library.uid.ExplicitVRLittleEndian
+    decoder = library.pixels.get_decoder(data.file_meta.TransferSyntaxUID)
+    if not decoder.is_available:
+        needed = "; ".join(decoder.missing_dependencies)
+        raise FileError(f"image: {str(path)!r} is compressed ({decoder.UID.name}), for which pydicom needs a plugin: {needed}")
+    if data.get("BitsAllocated") == 1 and pages > 1:
+        # Frames of a mask packed into bits may begin within a byte, where pydicom (3.0) does not reach them one by one.
+        return np.asarray(library.pixels.pixel_array(data)[page])
+    return np.asarray(library.pixels.pixel_array(data, index=page))
 
 
 def _of_frame(data: Any, page: int, name: str) -> Any:
@@ -144,8 +152,11 @@ def decode_nifti(path: Path, page: int, max_pixels: int) -> Decoded:
     library: Any = nibabel
     with library.openers.ImageOpener(str(path)) as file:
         kind = library.Nifti2Image if file.read(8)[4:7] == b"n+2" else library.Nifti1Image
+        file.seek(0)
+        noted = kind.header_class.from_fileobj(file, check=False)
     holder = library.FileHolder(str(path))
-    image = kind.from_file_map({"image": holder, "header": holder})
+    with library.imageglobals.LoggingOutputSuppressor():  # else nibabel tells stderr what it mends, such as sizes of 0
+        image = kind.from_file_map({"image": holder, "header": holder})
     shape = tuple(int(n) for n in image.shape)
     if len(shape) < 2 or min(shape) < 1:
         raise ImageError(f"image: expected an array of at least two axes in {str(path)!r}, found shape {shape}")
@@ -156,9 +167,9 @@ def decode_nifti(path: Path, page: int, max_pixels: int) -> Decoded:
     values = np.asarray(image.dataobj[(slice(None), slice(None), *map(int, np.unravel_index(page, others, order="F")))])
     if values.dtype.names:
         values = np.stack([values[name] for name in values.dtype.names], axis=2)
-    scale = MILLIMETRES.get(image.header.get_xyzt_units()[0], 1.0)
+    scale = MILLIMETRES.get(noted.get_xyzt_units()[0], 1.0)
     # Sizes are kept in 32 bits; the shortest number that is the same there is the one meant: 0.7, not 0.699999988.
-    dx, dy = (scale * float(str(zoom)) for zoom in image.header.get_zooms()[:2])
+    dx, dy = (scale * abs(float(str(zoom))) for zoom in noted.get_zooms()[:2])
     return np.ascontiguousarray(values.swapaxes(0, 1)[::-1]), notes, _size(dx, dy)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from img2tri.errors import ParameterError
 from img2tri.raster.binarizing import Level, binarize
+from img2tri.raster.cleaning import Removed, clean
 from img2tri.raster.gray import to_gray
-from img2tri.raster.labelling import label_map
+from img2tri.raster.labelling import LabelMap, label_map
 from img2tri.records import Picture
 
 
@@ -85,6 +86,19 @@ def find_zones(
         whole = np.issubdtype(gray.dtype, np.integer)
         return Zones(mask, 0, chosen, gray, float(np.floor(chosen.value)) + 0.5 if whole else chosen.value)
     return Zones(mask, 0, chosen, gray if chosen.how == "otsu" else None)
+
+
+def cleaned(zones: Zones, *, min_area: float | None, largest: bool, connectivity: int) -> tuple[Zones, Removed]:
+    """Remove specks and small holes, or all but the largest components, as `clean` does; `min_area` in pixels.
+
+    Examples
+    --------
+    >>> zones, removed = cleaned(Zones(np.eye(3, dtype=bool), 0), min_area=2, largest=False, connectivity=4)
+    >>> zones.labels.any(), removed["specks"]
+    (np.False_, 3)
+    """
+    labels, removed = clean(LabelMap(zones.labels, zones.background), min_area=min_area, largest=largest, connectivity=connectivity)
+    return replace(zones, labels=labels.values, background=labels.background), removed
 
 
 def _two_valued(gray: NDArray[Any]) -> bool:

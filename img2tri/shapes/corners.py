@@ -53,6 +53,8 @@ def find_corners(s: Sliding, heads: Points, room: complex) -> tuple[Ints, Points
     z = line.points(s.points)
     usable = (line.own | line.ring) & (s.axis[line.source] != 0)
     at = _bends(z, np.flatnonzero(line.own[:-1] & usable[:-1] & usable[1:]))
+    if not len(at):
+        return np.zeros(0, np.int64), np.zeros(0, np.complex128)
     backs = [_longest_line(s, line, z, usable, at - skip, -1) for skip in (0, 1)]
     aheads = [_longest_line(s, line, z, usable, at + 1 + skip, 1) for skip in (0, 1)]
     # A corner may lie on a link; then the crossing there belongs to neither line.
@@ -91,9 +93,9 @@ class _Lines:
 
 
 def _bends(z: Points, at: Ints) -> Ints:
-    """Places after which the line may turn: sharply within two crossings, or by 35 degrees within six."""
+    """Places after which the line may turn: sharply within two crossings, or by 45 degrees within six."""
     bent = np.zeros(len(at), bool)
-    for reach, turn in ((2, 1.5), (6, 0.6)):
+    for reach, turn in ((2, 1.5), (6, 0.8)):
         inside = (at >= reach) & (at + 1 + reach < len(z))
         i = at[inside]
         bent[inside] |= np.abs(np.angle((z[i + 1 + reach] - z[i + 1]) * (z[i] - z[i - reach]).conj())) > turn

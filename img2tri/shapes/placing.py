@@ -46,6 +46,7 @@ def place(
         at = cracks.head[links.crack[bends]]
         once = np.diff(np.searchsorted(np.sort(cracks.tail), np.stack([at, at + 1])), axis=0)[0] == 1
         bends, sharp, at = bends[once], sharp[once], at[once]
+    if corners and len(bends):
         links = cut(links, bends, frame)
         shift, slack = _known(links, frame, gray, level)
     points = _settle_nodes(links)

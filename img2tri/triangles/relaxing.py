@@ -32,10 +32,13 @@ FLATTEST = 0.05  # qualities below this weigh as much as this, else one flat tri
 
 Schedule = Sequence[tuple[int, float, int]]
 """Rows of (doublings, damping, steps): the power of the weights is 2 to the number of doublings."""
-TARGET, ROUNDS, MARGIN = 44.0, 2, 2.0
 SMOOTH: Schedule = ((1, 1.0, 3),)
 ANNEAL: Schedule = ((1, 1.0, 2), (1, 0.8, 3), (2, 0.6, 3), (3, 0.5, 4), (4, 0.3, 6))
-CLIMB: Schedule = ((5, 0.3, 8), (6, 0.2, 12), (7, 0.1, 30))
+CLIMB: Schedule = ((5, 0.3, 4), (6, 0.2, 6), (7, 0.1, 15))
+TARGET = 44.0  # degrees: angles above this are not worth a climb
+WORST = 2.0  # degrees: a climb goes where angles are within this of the worst
+CLIMBS = 2  # one after the other, as the worst place may then be another
+RINGS = 3  # of triangles around the worst that may move in a climb
 
 
 def shapes(vertices: Complex, triangles: Ints) -> tuple[Complex, Floats]:
@@ -86,14 +89,14 @@ def relaxed(vertices: Complex, triangles: Ints, free: Bools, schedule: Schedule)
     return _guarded(vertices, moved, triangles)
 
 
-def climbed(vertices: Complex, triangles: Ints, free: Bools, target: float = TARGET, rounds: int = ROUNDS, rings: int = 3) -> Complex:
-    """Relax with large powers, but only where the worst angles are, as long as these are less than `target` degrees."""
-    for _ in range(rounds):
+def climbed(vertices: Complex, triangles: Ints, free: Bools, target: float = TARGET) -> Complex:
+    """Relax with large powers, but only around the worst angles, and as long as these are less than `target` degrees."""
+    for _ in range(CLIMBS):
         angles = smallest_angles(vertices, triangles)
-        near = angles < min(target, angles.min(initial=target) + MARGIN)
+        near = angles < min(target, angles.min(initial=target) + WORST)
         if not near.any():
             break
-        for _ in range(rings):
+        for _ in range(RINGS):
             zone = np.zeros(len(vertices), bool)
             zone[triangles[near]] = True
             near = zone[triangles].any(axis=1)

@@ -87,7 +87,7 @@ def test_components_are_those_of_a_flood(labels, background, connectivity):
 
 
 @pytest.mark.parametrize("connectivity", [4, 8])
-@pytest.mark.parametrize("mask", [spiral() > 0, rings() > 0, np.indices((6, 7)).sum(axis=0) % 2 > 0], ids=["spiral", "rings", "checkerboard"])
+@pytest.mark.parametrize("mask", [spiral() > 0, rings() > 0, np.indices((6, 7)).sum(axis=0) % 2 > 0], ids=["spiral", "rings", "board"])
 def test_components_of_a_mask_are_those_of_its_topology(mask, connectivity):
     mask = np.pad(mask, 1)
     parts = find_components(mask, connectivity=connectivity)

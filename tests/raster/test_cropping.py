@@ -37,16 +37,15 @@ def values_at(picture, points):
 @given(across=SIDES, up=SIDES)
 @settings(max_examples=60, deadline=None, derandomize=True)
 def test_each_place_keeps_its_pixel_and_none_is_lost(frame, across, up):
-    left, bottom, right, top = frame.bounds
-    box = left + across[0] * (right - left), bottom + up[0] * (top - bottom), left + across[1] * (right - left), bottom + up[1] * (top - bottom)
-    part = crop(sheet(frame), box)
+    corner, size = np.array(frame.bounds[:2]), np.array(frame.spacing)
+    low, high = (corner + np.array(ends) * size * [30, 20] for ends in zip(across, up, strict=True))
+    part = crop(sheet(frame), (*low, *high))
     assert part.values.shape == part.frame.shape
     assert (part.frame.spacing, part.frame.upward, part.frame.z) == (frame.spacing, frame.upward, frame.z)
     # The part covers the box, and less than a pixel more on each side.
-    size = np.array(frame.spacing)
-    more = np.array([box[0] - part.frame.bounds[0], box[1] - part.frame.bounds[1], part.frame.bounds[2] - box[2], part.frame.bounds[3] - box[3]])
-    assert (more >= -2e-6 * np.tile(size, 2)).all()
-    assert (more < np.tile(size, 2) * (1 + 1e-9)).all()
+    for more in (low - part.frame.bounds[:2], part.frame.bounds[2:] - high):
+        assert (-2e-6 * size <= more).all()
+        assert (more < (1 + 1e-9) * size).all()
     # Centres of pixels have the values they had.
     h, w = part.frame.shape
     r, c = np.mgrid[:h, :w] + 0.5

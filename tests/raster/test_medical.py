@@ -74,7 +74,7 @@ def nifti(path, values, spacing=(0.7, 0.3, 2.0), unit="mm", slope=None, intercep
 
     kind = kind or nibabel.Nifti1Image
     zooms = [*spacing, 1.0, 1.0][: values.ndim]
-    image = kind(values, np.diag([*zooms[:2], 1.0, 1.0]), dtype=values.dtype)
+    image = kind(values, np.diag([*spacing, 1.0]), dtype=values.dtype)
     image.header.set_zooms(zooms)
     image.header.set_xyzt_units(unit)
     if slope is not None:
@@ -145,7 +145,7 @@ def test_dicom_is_rescaled_to_what_was_measured(tmp_path):
 
 def test_dicom_lookup_table(pydicom, tmp_path):
     table = RNG.integers(0, 1000, 4000, np.uint16)
-    lut = item(pydicom, LUTDescriptor=[4000, 0, 16], LUTData=table.tolist())
+    lut = item(pydicom, LUTDescriptor=[4000, 0, 16], LUTData=table.astype("<u2").tobytes())
     dicom(tmp_path / "a.dcm", FRAMES[0], ModalityLUTSequence=lut)
     same(read(tmp_path / "a.dcm").values, table[FRAMES[0]])
 
@@ -239,7 +239,8 @@ def test_dicom_compressed_in_a_way_pydicom_needs_help_for(pydicom, tmp_path):
 def test_dicom_without_a_header_is_known_by_its_suffix(pydicom, tmp_path):
     for implicit in (True, False):
         data = dicom(tmp_path / "a.dcm", FRAMES[0], PixelSpacing=[1, 2])
-        bare = pydicom.Dataset({tag: data[tag] for tag in data})
+        bare = pydicom.Dataset()
+        bare.update({element.tag: element for element in data})
         bare.save_as(tmp_path / "a.dcm", implicit_vr=implicit, little_endian=True, enforce_file_format=False)
         assert (tmp_path / "a.dcm").read_bytes()[128:132] != b"DICM"
         same(read(tmp_path / "a.dcm").values, FRAMES[0])
@@ -265,7 +266,7 @@ def test_dicom_with_more_pixels_than_allowed(tmp_path):
 
 
 @pytest.mark.usefixtures("nibabel")
-@pytest.mark.parametrize("dtype", [np.uint8, np.int8, np.uint16, np.int16, np.uint32, np.int32, np.uint64, np.int64, np.float32, np.float64])
+@pytest.mark.parametrize("dtype", ["uint8", "int8", "uint16", "int16", "uint32", "int32", "uint64", "int64", "float32", "float64"])
 @pytest.mark.parametrize("name", ["a.nii", "a.NII.GZ"])
 def test_nifti_keeps_stored_values_and_lies_as_it_is_numbered(name, dtype, tmp_path):
     values = VOLUME.astype(dtype)
@@ -291,7 +292,7 @@ def test_nifti_size_is_in_millimetres_and_is_used(unit, scale, tmp_path):
 
 
 @pytest.mark.usefixtures("nibabel")
-def test_nifti_without_a_size(tmp_path):
+def test_nifti_without_a_size(tmp_path, capfd):
     nifti(tmp_path / "a.nii", VOLUME)
     raw = bytearray((tmp_path / "a.nii").read_bytes())
     raw[80:84] = np.float32(0).tobytes()  # pixdim[1]
@@ -299,18 +300,15 @@ def test_nifti_without_a_size(tmp_path):
     assert read(tmp_path / "a.nii").frame.spacing == (1, 1)
     with pytest.raises(ParameterError, match="spacing: 'file' expected a resolution"):
         read(tmp_path / "a.nii", spacing="file")
+    assert capfd.readouterr() == ("", "")
 
 
 @pytest.mark.usefixtures("nibabel")
-def test_nifti_labels_stay_integers_and_measured_values_are_scaled(tmp_path):
+def test_nifti_labels_stay_integers(tmp_path):
     labels = (abs(VOLUME) % 5).astype(np.int16)
     nifti(tmp_path / "a.nii", labels, slope=1.0, intercept=0.0)
     assert (label_map(read(tmp_path / "a.nii").values).values == labels[:, ::-1, 0].T).all()
     assert read(tmp_path / "a.nii").values.dtype == np.int16
-    nifti(tmp_path / "a.nii", VOLUME, slope=0.5, intercept=-3.0)
-    raw = read(tmp_path / "a.nii").values
-    assert raw.dtype == np.float64
-    assert abs(raw - VOLUME[:, ::-1, 0].T).max() <= 0.25  # nibabel divides when it writes, so what is read is what was given
 
 
 def test_nifti_slope_is_applied(nibabel, tmp_path):
@@ -395,8 +393,10 @@ def test_nifti_with_more_pixels_than_allowed(tmp_path):
         read(tmp_path / "a.nii", max_pixels=53)
 
 
-@pytest.mark.parametrize(("name", "start", "extra"), [("a.dcm", b"", "dicom"), ("a.nii", b"", "nifti"), ("x", b"\0" * 128 + b"DICM", "dicom"),
-                                                      ("x", b"\0" * 344 + b"n+1\0", "nifti")])  # fmt: skip
+@pytest.mark.parametrize(
+    ("name", "start", "extra"),
+    [("a.dcm", b"", "dicom"), ("a.nii", b"", "nifti"), ("x", b"\0" * 128 + b"DICM", "dicom"), ("x", b"\0" * 344 + b"n+1\0", "nifti")],
+)
 def test_what_to_install_is_said(name, start, extra, tmp_path, monkeypatch):
     for library in ("pydicom", "pydicom.pixels", "nibabel"):
         monkeypatch.setitem(sys.modules, library, None)

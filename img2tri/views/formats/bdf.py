@@ -16,7 +16,7 @@ from img2tri.views.formats.text import fitted, in_lines, notes, numbered
 
 # Card of each kind, and its order of the nodes where that is not the one of VTK: upright edges come before those of the top.
 _CARDS = {"triangle": "CTRIA3", "triangle6": "CTRIA6", "wedge": "CPENTA", "wedge15": "CPENTA"}
-_ORDERS = {"wedge15": [0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11]}
+ORDERS = {"wedge15": [0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11]}
 _FIELDS = 8  # of 8 characters each in a line, between name and continuation
 
 
@@ -29,7 +29,7 @@ def bdf(made: Cells) -> dict[str, bytes]:
         The bytes of the file, under "".
     """
     lines = [*notes(made.texts, "$ "), "CEND", "BEGIN BULK", *_grid(made.points)]
-    cells = made.cells[:, _ORDERS.get(made.kind, slice(None))] + 1
+    cells = made.cells[:, ORDERS.get(made.kind, slice(None))] + 1
     for label, name in made.names.items():
         mine, number = np.flatnonzero(made.regions == label), made.ids[label]
         lines.append(f"$HMNAME COMP {number:>19}{_quoted(name)}")

@@ -16,8 +16,8 @@ from img2tri.views.formats.text import notes, numbered
 from img2tri.views.writers import rows
 
 # Gmsh's number of each type of element, and its order of the nodes where that is not the one of VTK.
-_TYPES = {"triangle": 2, "triangle6": 9, "wedge": 6, "wedge15": 18}
-_ORDERS = {"wedge15": [0, 1, 2, 3, 4, 5, 6, 8, 12, 7, 13, 14, 9, 11, 10]}
+TYPES = {"triangle": 2, "triangle6": 9, "wedge": 6, "wedge15": 18}
+ORDERS = {"wedge15": [0, 1, 2, 3, 4, 5, 6, 8, 12, 7, 13, 14, 9, 11, 10]}
 _FACETS = {(1, 2): 1, (1, 3): 8, (2, 3): 2, (2, 4): 3, (2, 6): 9, (2, 8): 16}  # by dimension and number of nodes
 VERSIONS = ("4.1", "2.2")
 
@@ -60,7 +60,7 @@ _Groups = dict[tuple[int, int], tuple[str, Ints]]
 def _groups(made: Cells) -> _Groups:
     """Return (dimension, number) -> name and elements, facets first; numbers of nodes begin with 1."""
     inside = 3 if made.solid else 2
-    cells = made.cells[:, _ORDERS.get(made.kind, slice(None))] + 1
+    cells = made.cells[:, ORDERS.get(made.kind, slice(None))] + 1
     groups: _Groups = {(inside - 1, made.tags[name]): (name, made.facets(name) + 1) for name in made.sides}
     return groups | {(inside, made.ids[label]): (name, cells[made.regions == label]) for label, name in made.names.items()}
 
@@ -70,7 +70,7 @@ def _type(dimension: int, elements: Ints, inside: int) -> int:
     nodes = elements.shape[1]
     if dimension < inside:
         return _FACETS[dimension, nodes]
-    return _TYPES[{(2, 3): "triangle", (2, 6): "triangle6", (3, 6): "wedge", (3, 15): "wedge15"}[inside, nodes]]
+    return TYPES[{(2, 3): "triangle", (2, 6): "triangle6", (3, 6): "wedge", (3, 15): "wedge15"}[inside, nodes]]
 
 
 def _version_2(points: Floats, groups: _Groups) -> list[str]:

@@ -2,16 +2,18 @@
 
 Both files have the same points, in two coordinates where the mesh is flat, so the tags of facets find their edges in the mesh::
 
-    with dolfinx.io.XDMFFile(MPI.COMM_WORLD, "femur.xdmf", "r") as file:
+    text = XDMFFile.Encoding.ASCII
+    with XDMFFile(MPI.COMM_WORLD, "femur.xdmf", "r", encoding=text) as file:
         mesh = file.read_mesh(name="Grid")
         regions = file.read_meshtags(mesh, name="Grid")
     mesh.topology.create_connectivity(1, 2)
-    with dolfinx.io.XDMFFile(MPI.COMM_WORLD, "femur_facets.xdmf", "r") as file:
+    with XDMFFile(MPI.COMM_WORLD, "femur_facets.xdmf", "r", encoding=text) as file:
         facets = file.read_meshtags(mesh, name="Grid")
 
-The values are the labels of regions and the tags of sets. XDMF has no place for names of values; they are in an Information, as in the
-files of older versions of meshio, whose reader returns them as ``field_data``. Numbers are in the XML itself, so there is no HDF5 file beside
-it. The ends of solids are triangles while their walls are not, so they have a file of their own.
+All numbers are in the XML itself, hence the encoding; so there is no HDF5 file that could get lost. The values are the labels of regions, or,
+as measures in FEniCSx must not be negative, the next free number for labels below 1; and the tags of sets. XDMF has no place for names
+of values; they are in an Information, where the reader of meshio finds them. The ends of solids are triangles while their walls are not,
+so they have a file of their own.
 """
 
 from __future__ import annotations
@@ -43,13 +45,21 @@ _GRID = """<?xml version="1.0" encoding="UTF-8"?>
 <Attribute Name="{name}" AttributeType="Scalar" Center="Cell">
 {values}
 </Attribute>
-<Information Name="names" Value="{named}"><![CDATA[<main>{names}</main>]]></Information>
+{time}<Information Name="names" Value="{named}"><![CDATA[<main>{names}</main>]]></Information>
 </Grid></Domain></Xdmf>
 """
 
 
-def xdmf(made: Cells) -> dict[str, bytes]:
-    """Write a mesh as XDMF; its texts become comments.
+def xdmf(made: Cells, *, timed: bool = False) -> dict[str, bytes]:
+    """Write a mesh as XDMF.
+
+    Parameters
+    ----------
+    made
+        The mesh; its texts become comments.
+    timed
+        True: with a time, 0, without which pyvista cannot read XDMF, and with which meshio cannot. Both readings go by the letter of
+        the format; FEniCSx and ParaView read either.
 
     Returns
     -------
@@ -59,26 +69,29 @@ def xdmf(made: Cells) -> dict[str, bytes]:
     """
     points = made.points if made.solid else made.points[:, :2]
     inside = 3 if made.solid else 2
-    notes = "".join(f"<!-- {name}: {text} -->\n".replace("--", "-\\u002d") for name, text in made.texts.items())
-    notes = notes.replace("<!-\\u002d", "<!--").replace("-\\u002d>", "-->")
-    labels = {name: label for label, name in made.names.items()}
-    files = {"": _grid(notes, points, _TYPES[made.kind], made.cells, "region", made.regions, labels, inside)}
+    # Two hyphens would end the comment; so written, they are the same text to a JSON reader.
+    notes = "".join("<!-- {} -->\n".format(f"{name}: {text}".replace("--", "-\\u002d")) for name, text in made.texts.items())
+    head = (notes, '<Time Value="0"/>\n' if timed else "", points)
+    ids = {name: made.ids[label] for label, name in made.names.items()}
+    labels, which = np.unique(made.regions, return_inverse=True)
+    numbers = np.array([made.ids[label] for label in labels.tolist()])[which]
+    files = {"": _grid(*head, _TYPES[made.kind], made.cells, "region", numbers, ids, inside)}
     for ending, types, ends in ((FACETS, _FACETS, False), (ENDS, _ENDS, True)):
         names = [name for name in made.sides if (name in (Z_MIN, Z_MAX) and made.solid) == ends]
         if names:
             facets = [made.facets(name) for name in names]
             tags = {name: made.tags[name] for name in names}
             values = np.repeat(list(tags.values()), list(map(len, facets)))
-            files[ending] = _grid(notes, points, types[facets[0].shape[1]], np.concatenate(facets), "boundary", values, tags, inside - 1)
+            files[ending] = _grid(*head, types[facets[0].shape[1]], np.concatenate(facets), "boundary", values, tags, inside - 1)
     return files
 
 
 def _grid(
-    notes: str, points: Floats, kind: str, cells: Ints, name: str, values: Ints, names: Mapping[str, int], dimension: int
+    notes: str, time: str, points: Floats, kind: str, cells: Ints, name: str, values: Ints, names: Mapping[str, int], dimension: int
 ) -> bytes:
     maps = "".join(f'<map key={quoteattr(key)} dim="{dimension}">{value}</map>' for key, value in names.items())
     return _GRID.format(
-        notes=notes, space="XYZ"[: points.shape[1]], points=_item(points), kind=kind, count=len(cells), nodes=cells.shape[1],
+        notes=notes, time=time, space="XYZ"[: points.shape[1]], points=_item(points), kind=kind, count=len(cells), nodes=cells.shape[1],
         cells=_item(cells), name=name, values=_item(values[:, None]), named=len(names), names=maps.replace("]]>", escape("]]>")),
     ).encode()  # fmt: skip
 

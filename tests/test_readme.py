@@ -1,0 +1,48 @@
+"""What the README says, holds: its Python runs, its test command is the one CI calls, its files exist."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+
+from img2tri.cli import main
+
+ROOT = Path(__file__).parent.parent
+README = ROOT / "README.md"
+
+pytestmark = pytest.mark.skipif(not README.exists(), reason="only where the sources are checked out")
+
+
+def blocks(language):
+    return re.findall(rf"```{language}\n(.*?)```", README.read_text(encoding="utf-8"), re.DOTALL)
+
+
+def test_python_blocks_run(monkeypatch, capsys):
+    monkeypatch.chdir(ROOT)
+    for block in blocks("python"):
+        exec(compile(block, "README.md", "exec"), {})
+    assert "min_angle" in capsys.readouterr().out
+
+
+def test_the_test_command_is_what_ci_calls():
+    command = next(block.strip() for block in blocks("sh") if "pytest" in block)
+    assert command in (ROOT / ".ci" / "run").read_text(encoding="utf-8")
+
+
+def test_the_main_command_makes_its_files(tmp_path, monkeypatch, capsys):
+    command = next(block.strip() for block in blocks("sh") if "img2tri mesh data" in block)
+    words = shlex.split(command.split("&& .venv/bin/img2tri ")[1])
+    (tmp_path / "out").mkdir()
+    (tmp_path / "data").symlink_to(ROOT / "data")
+    monkeypatch.chdir(tmp_path)
+    assert main(words) == 0
+    assert {path.name for path in (tmp_path / "out").iterdir()} >= {"femur.stl", "femur.ply", "femur.vtu", "femur.png"}
+    assert "min_angle" in capsys.readouterr().out
+
+
+def test_links_lead_somewhere():
+    for target in re.findall(r"\]\((?!http)([^)#]+)\)", README.read_text(encoding="utf-8")):
+        assert (ROOT / target).exists(), target
