@@ -98,6 +98,7 @@ def _mesh(arguments: Namespace) -> int:
 def _made(job: _Job, arguments: Namespace, progress: Callable[[str, float], None]) -> TriangleMesh:
     """Mesh one image and write its files."""
     from img2tri.pipeline import mesh_image
+    from img2tri.raster.cropping import crop
     from img2tri.raster.reading import read
     from img2tri.views.storing import store, writable
 
@@ -106,7 +107,8 @@ def _made(job: _Job, arguments: Namespace, progress: Callable[[str, float], None
     for path in job.meshes:
         mesh.save(path, height=arguments.height)
     if job.plot:
-        values = read(job.image, **{name: options[name] for name in ("page", "max_pixels") if name in options}).values
+        place = {name: options[name] for name in ("spacing", "origin", "page", "max_pixels") if name in options}
+        values = crop(read(job.image, **place), options.get("crop")).values
         mesh.plot(values, job.plot, colour_by=None if arguments.colour_by == "none" else arguments.colour_by)
     if job.report:
         store(writable(job.report, [".json"]), (mesh.report.to_json() + "\n").encode())

@@ -8,19 +8,24 @@ end of this road all outlines run through the middles between pixels, where they
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
 from img2tri.raster.zones import Zones
-from img2tri.records import Floats, Frame, Ints, Made, Outlines
+from img2tri.records import Floats, Frame, Made, Outlines
 from img2tri.shapes.areas import area_error, keep_areas
 from img2tri.shapes.coarsening import refine, settle
 from img2tri.shapes.cracks import find_cracks
-from img2tri.shapes.drafts import draft
+from img2tri.shapes.drafts import Draft, draft
+from img2tri.shapes.fields import Field
 from img2tri.shapes.links import Links
 from img2tri.shapes.placing import place, place_on_sides
+from img2tri.shapes.sizing import by_curvature, by_pieces, by_thickness, limit_growth
+from img2tri.shapes.unrolling import Points
 
 AREA_ROUNDS, AREA_ERROR = 4, 1e-4  # how often breaks are moved for the sake of areas, and the relative error that is left
+RESPACINGS = 2  # how often outlines are spaced anew around places that need shorter pieces
 ATTEMPTS = 12  # rounds of refining the outlines; two are the most that ordinary images take
 
 
@@ -48,25 +53,57 @@ def trace_outlines(
     return place(cracks, frame, gray=zones.gray, level=zones.level, corners=corners != "round")
 
 
+@dataclass(frozen=True, eq=False)
+class Sizes:
+    """Edge lengths wanted, in px.
+
+    Attributes
+    ----------
+    longest
+        The greatest length wanted anywhere.
+    field
+        Lengths over the image; None where it is the greatest everywhere.
+    boundary
+        Length along all outlines; None: as inside.
+    elements_across
+        How many edges at least across the thinnest places; None is not looked after.
+    segments_per_turn
+        How many edges at least to a full turn of an outline; None: as many as the tolerance needs.
+    shortest
+        Edges of outlines are not made shorter than this for the sake of the above, only where tolerance or topology need it.
+    gradation
+        Growth of lengths per unit of distance.
+    """
+
+    longest: float
+    field: Field | None = None
+    boundary: float | None = None
+    elements_across: float | None = None
+    segments_per_turn: float | None = None
+    shortest: float = 0.0
+    gradation: float = 0.3
+
+
 def conform(
     outlines: Outlines,
     links: Links,
+    sizes: Sizes,
     *,
-    edge_length: float,
     tolerance: float = 0.5,
     min_angle: float = 30.0,
     corners: str = "auto",
     keep_area: bool = True,
     seed: int = 0,
-    progress: Callable[[str, float], None] | None = None,
+    progress: Callable[[str, float], object] | None = None,
 ) -> Made:
     """Mesh all regions of an image, given its dense outlines; lengths in px."""
     from img2tri.triangles.delaunay import NetworkError
     from img2tri.triangles.filling import fill
+    from img2tri.triangles.relaxing import smallest_angles
 
     tell = progress or (lambda *_: None)
     tell("spacing", 0.3)
-    coarse = settle(draft(outlines, links, spacing=edge_length, keep_corners=corners == "keep"), tolerance=tolerance)
+    coarse = _spaced(outlines, links, sizes, tolerance, corners == "keep")
     for _ in range(AREA_ROUNDS if keep_area else 0):
         if area_error(coarse) <= AREA_ERROR:
             break
@@ -77,9 +114,10 @@ def conform(
         segments, left, right = chains.segments
         try:
             vertices, triangles, regions = fill(
-                chains.points, segments, left, right, edge_length=edge_length, min_angle=min_angle, seed=seed
-            )
-            narrow = _smallest_angles(vertices, triangles) < min_angle - 1e-9
+                chains.points, segments, left, right, edge_length=sizes.longest, min_angle=min_angle,
+                gradation=sizes.gradation, size=sizes.field, seed=seed,
+            )  # fmt: skip
+            narrow = smallest_angles(vertices[:, 0] + 1j * vertices[:, 1], triangles) < min_angle - 1e-9
             if not narrow.any() or attempt == ATTEMPTS - 1:
                 break
             doubtful = vertices[triangles[narrow]].reshape(-1, 2)
@@ -92,12 +130,39 @@ def conform(
         coarse = settle(coarse, tolerance=tolerance)
         if (coarse.breaks == before.breaks).all() and (coarse.reset == before.reset).all():
             break
-    return Made(vertices, triangles, regions, {"rounds": attempt + 1, "reset": int(coarse.reset.sum())})
+    counted = {"rounds": attempt + 1, "reset": int(coarse.reset.sum())}
+    if sizes.shortest:
+        first, last = coarse.pieces
+        counted["below_min_edge_length"] = int((abs(coarse.places[last] - coarse.places[first]) < sizes.shortest).sum())
+    return Made(vertices, triangles, regions, counted)
 
 
-def _smallest_angles(vertices: Floats, triangles: Ints) -> Floats:
-    """Smallest angle of each triangle in degrees."""
-    z = (vertices[:, 0] + 1j * vertices[:, 1])[triangles]
-    side = np.roll(z, -1, axis=1) - z
-    angle = np.pi - np.abs(np.angle(side * np.roll(side, 1, axis=1).conj()))
-    return np.asarray(np.degrees(angle.min(axis=1)))
+def _spaced(outlines: Outlines, links: Links, sizes: Sizes, tolerance: float, keep_corners: bool) -> Draft:
+    """Coarsen the outlines to the lengths wanted, spaced evenly.
+
+    A first coarsening shows where pieces have to be shorter than wanted; a second, and if need be a third, spaces them evenly
+    around these places.
+    """
+    z = (outlines.points[:, 0] + 1j * outlines.points[:, 1])[outlines.indices]
+    wanted = limit_growth(_wanted(z, links, sizes), z, links, sizes.gradation)
+    coarse = settle(draft(outlines, links, spacing=wanted, keep_corners=keep_corners), tolerance=tolerance)
+    for _ in range(RESPACINGS):
+        shorter = limit_growth(by_pieces(coarse, wanted), z, links, sizes.gradation)
+        if (shorter > 0.99 * wanted).all():
+            break
+        wanted = shorter
+        coarse = settle(draft(outlines, links, spacing=wanted, keep_corners=keep_corners), tolerance=tolerance)
+    return coarse
+
+
+def _wanted(z: Points, links: Links, sizes: Sizes) -> Floats:
+    """Lengths wanted at the dense points of the outlines, before their growth is limited."""
+    longest = sizes.longest if sizes.boundary is None else min(sizes.longest, sizes.boundary)
+    wanted = np.full(len(z), longest)
+    if sizes.field is not None:
+        wanted = np.minimum(wanted, sizes.field(np.stack([z.real, z.imag], axis=1)))
+    if sizes.elements_across is not None:
+        wanted = np.minimum(wanted, by_thickness(z, links, longest, sizes.elements_across))
+    if sizes.segments_per_turn is not None:
+        wanted = np.minimum(wanted, by_curvature(z, links, longest, sizes.segments_per_turn))
+    return np.asarray(np.maximum(wanted, sizes.shortest))

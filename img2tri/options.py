@@ -15,8 +15,8 @@ from img2tri import __version__
 # Options that go on to mesh_image, by its own names. Those not given are not in the namespace.
 MESH_OPTIONS = (
     "recipe", "threshold", "labels", "background", "invert", "connectivity", "outline", "corners", "edge_length", "min_angle",
-    "tolerance", "keep_area", "smoothing", "iterations", "spacing", "origin", "page", "max_pixels", "names", "seed",
-    "step", "n_boundary_points", "n_interior_points", "min_distance", "min_distance_to_boundary",
+    "tolerance", "keep_area", "smoothing", "iterations", "spacing", "origin", "page", "crop", "min_area", "largest", "max_pixels",
+    "names", "seed", "step", "n_boundary_points", "n_interior_points", "min_distance", "min_distance_to_boundary",
 )  # fmt: skip
 
 EXAMPLES = """examples:
@@ -132,6 +132,9 @@ def _add_mesh_options(parser: ArgumentParser) -> None:
     add("--labels", type=_labels, metavar="[LIST]", help="every value is a region of its own; with a list such as 1,2,3 these are")
     add("--background", type=_background, metavar="N", help="the value that is not meshed, or none (default 0)")
     add("--name", dest="names", action="append", type=_name, metavar="N=NAME", help="name of a region, as in 1=bone; several times")
+    add("--crop", type=_numbers, metavar="L,B,R,T", help="mesh only this part: left, bottom, right, top in world units")
+    add("--min-area", metavar="A", help="drop specks and fill holes smaller than this, in world units squared or as 20px2")
+    add("--largest", action="store_true", help="keep only the largest component of each region")
     add("--page", type=_whole, metavar="N", help="which image of a file with several, from 0 (default 0)")
     add("--max-pixels", type=_whole, metavar="N", help="refuse larger images (default 268435456)")
 
@@ -183,8 +186,12 @@ def _number_or_word(text: str) -> float | str:
         return text
 
 
+def _numbers(text: str) -> tuple[float, ...]:
+    return tuple(map(_number, text.split(",")))
+
+
 def _pair(text: str) -> float | str | tuple[float, ...]:
-    return tuple(map(_number, text.split(","))) if "," in text else _number_or_word(text)
+    return _numbers(text) if "," in text else _number_or_word(text)
 
 
 def _labels(text: str) -> bool | list[int]:

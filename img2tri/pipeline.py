@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, TypedDict, Unpack
 
-from img2tri.conforming import conform, trace_outlines
+from img2tri.conforming import Sizes, conform, trace_outlines
 from img2tri.errors import ImageError, ParameterError, choice, finite, integer
 from img2tri.mesh import TriangleMesh
 from img2tri.paper import paper_mesh
@@ -18,6 +18,7 @@ from img2tri.raster.cropping import crop as cropped
 from img2tri.raster.reading import read
 from img2tri.raster.zones import Zones, cleaned, find_zones
 from img2tri.records import Floats, Frame, Origin, Outlines
+from img2tri.shapes.fields import EdgeLength, Field, length_field
 from img2tri.shapes.links import Links, pixel_areas, pixels_beside
 from img2tri.shapes.polygons import enclosed_areas
 
@@ -50,7 +51,12 @@ def mesh_image(
     connectivity: int = 4,
     outline: str = "smooth",
     corners: str = "auto",
-    edge_length: float | str | None = None,
+    edge_length: EdgeLength | None = None,
+    gradation: float = 0.3,
+    min_edge_length: float | str | None = None,
+    boundary_edge_length: float | str | None = None,
+    elements_across: float | None = None,
+    segments_per_turn: float | None = None,
     min_angle: float = 30.0,
     tolerance: float | str = "0.5px",
     keep_area: bool = True,
@@ -96,7 +102,18 @@ def mesh_image(
         angles, which the report then lists. "round": they are smoothed as all else is.
     edge_length
         Wanted length of edges, in world units, or "8px", or "2%" of the image diagonal. None: such that some 2000 triangles
-        fill the image, at least 4 px. Smaller is finer and slower.
+        fill the image, at least 4 px. Smaller is finer and slower. Or a field: lengths by label, ``{1: 4, 2: "8px"}``; an array
+        (h, w) of lengths, one for each pixel; a function of places (k, 2) that returns lengths (k,).
+    gradation
+        By how much the length may grow per unit of distance. Smaller gives better triangles, and more.
+    min_edge_length
+        Outlines get no shorter edges than this for the sake of the options here, only where tolerance, topology or angles need it.
+    boundary_edge_length
+        Length of edges along all outlines; fine there, coarse inside.
+    elements_across
+        At least so many edges across the thinnest places, 2 or 3 for bending. None does not look after it.
+    segments_per_turn
+        At least so many edges to a full turn of an outline, so that small holes stay round. None: as the tolerance needs.
     min_angle
         Degrees, 0 to 33. The least angle of a triangle; above 30 more triangles are needed.
     tolerance
@@ -181,12 +198,20 @@ def mesh_image(
 
     tell("points", 0.3)
     within = frame.length("tolerance", tolerance) / frame.pixel
-    length = _edge_length(edge_length, pixel_areas(links), frame)
+    finite("gradation", gradation, above=0)
+    sizes = Sizes(
+        *_longest(edge_length, gradation, zones, links, frame),
+        _px("boundary_edge_length", boundary_edge_length, frame),
+        None if elements_across is None else finite("elements_across", elements_across, above=0),
+        None if segments_per_turn is None else finite("segments_per_turn", segments_per_turn, least=3),
+        _px("min_edge_length", min_edge_length, frame) or 0.0,
+        gradation,
+    )
     if recipe == "conforming":
         # Smoothing with a free boundary gets half of what outlines and mesh may differ by.
         spent = within / 2 if smoothing == "cotangent" else within
         made = conform(
-            outlines, links, edge_length=length, tolerance=spent, min_angle=min_angle, corners=corners,
+            outlines, links, sizes, tolerance=spent, min_angle=min_angle, corners=corners,
             keep_area=keep_area, seed=seed, progress=tell,
         )  # fmt: skip
     else:
@@ -194,7 +219,7 @@ def mesh_image(
             paper = {"step": PAPER_STEP, **paper}
         passes = iterations if (smoothing or PAPER_SMOOTHING[recipe]) == "uniform" else 0
         made = paper_mesh(
-            zones.labels, frame, recipe=recipe, background=zones.background, edge_length=length,
+            zones.labels, frame, recipe=recipe, background=zones.background, edge_length=sizes.longest,
             iterations=passes, seed=seed, **paper,
         )  # fmt: skip
 
@@ -207,7 +232,12 @@ def mesh_image(
         "connectivity": connectivity,
         "outline": outline,
         "corners": corners,
-        "edge_length": length * frame.pixel,
+        "edge_length": sizes.longest * frame.pixel if sizes.field is None else "field",
+        "gradation": gradation,
+        "min_edge_length": min_edge_length,
+        "boundary_edge_length": boundary_edge_length,
+        "elements_across": elements_across,
+        "segments_per_turn": segments_per_turn,
         "min_angle": min_angle,
         "tolerance": within * frame.pixel,
         "keep_area": keep_area,
@@ -261,11 +291,19 @@ def _expected_areas(zones: Zones, outlines: Outlines, links: Links) -> Floats:
     return pixel_areas(links) if zones.gray is None else enclosed_areas(outlines)
 
 
-def _edge_length(wanted: float | str | None, areas: Floats, frame: Frame) -> float:
-    """Return the wanted length of edges in px; equilateral triangles of the default one fill the regions about `USUAL_TRIANGLES` times."""
+def _longest(wanted: EdgeLength | None, gradation: float, zones: Zones, links: Links, frame: Frame) -> tuple[float, Field | None]:
+    """Return the greatest wanted length in px, and the field of lengths if there is one.
+
+    Equilateral triangles of the default length fill the regions about `USUAL_TRIANGLES` times.
+    """
     if wanted is not None:
-        return frame.length("edge_length", wanted) / frame.pixel
-    return max(4.0, math.sqrt(areas[1:].sum() / USUAL_TRIANGLES * 4 / math.sqrt(3)))
+        return length_field(wanted, frame, zones.labels, gradation=gradation)
+    return max(4.0, math.sqrt(pixel_areas(links)[1:].sum() / USUAL_TRIANGLES * 4 / math.sqrt(3))), None
+
+
+def _px(name: str, value: float | str | None, frame: Frame) -> float | None:
+    """Turn a length given by a user into px."""
+    return None if value is None else frame.length(name, value) / frame.pixel
 
 
 def _silent(stage: str, fraction: float) -> None:

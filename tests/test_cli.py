@@ -20,7 +20,7 @@ from PIL import Image
 
 from img2tri import cli, mesh_image, options, pipeline
 from img2tri.cli import main
-from img2tri.views.files import load
+from img2tri.views.files import FORMATS, load
 
 # Each option of `img2tri mesh` that goes to mesh_image, as typed and as it must arrive.
 ARRIVE = {
@@ -41,6 +41,9 @@ ARRIVE = {
     "spacing": (["--spacing", "0.5,0.7"], (0.5, 0.7)),
     "origin": (["--origin=-5,2.5"], (-5.0, 2.5)),
     "page": (["--page", "2"], 2),
+    "crop": (["--crop", "1,2.5,30,40"], (1.0, 2.5, 30.0, 40.0)),
+    "min_area": (["--min-area", "20px2"], "20px2"),
+    "largest": (["--largest"], True),
     "max_pixels": (["--max-pixels", "1000"], 1000),
     "names": (["--name", "1=bone", "--name", "2=a = b"], {1: "bone", 2: "a = b"}),
     "seed": (["--seed", "7"], 7),
@@ -147,6 +150,16 @@ def test_help_states_the_default(name, capsys):
     assert f"(default {shown}" in " ".join(about[0].split())
 
 
+def test_help_lists_the_formats(capsys):
+    listed = []
+    for command in ("mesh", "quality"):
+        with pytest.raises(SystemExit):
+            main([command, "--help"])
+        text = " ".join(capsys.readouterr().out.split())
+        listed.append(set(re.findall(r"\.\w+", re.search(r"\.stl, .*? or (\.\w+)", text)[0])))
+    assert listed == [set(FORMATS), {suffix for suffix, form in FORMATS.items() if form.read}]
+
+
 def test_labels_before_the_image_does_not_swallow_it(arrived, disc):
     assert main(["mesh", "--labels", disc, "--quiet"]) == 0
     assert arrived == [(disc, {"labels": True})]
@@ -205,6 +218,13 @@ def test_colour_by_changes_the_figure(disc, tmp_path):
         drawn.append(path.read_bytes())
     assert len(set(drawn)) == 3
     assert drawn[0] == drawn[3]
+
+
+def test_the_figure_shows_the_part_that_was_meshed(disc, tmp_path, monkeypatch):
+    seen = []
+    monkeypatch.setattr("img2tri.mesh.TriangleMesh.plot", lambda *given, **_: seen.append(given[1]))
+    assert main(["mesh", disc, "--crop", "0,0,10,20", "--spacing", "0.5", "--quiet", "--plot", str(tmp_path / "figure.png")]) == 0
+    assert np.array_equal(seen[0], specimens.disc(40, 15)[:, :20] * 255)
 
 
 def test_the_figure_shows_the_page_that_was_meshed(tmp_path, monkeypatch):

@@ -7,14 +7,14 @@ import oracles
 import pytest
 import specimens
 
-from img2tri.conforming import conform, trace_outlines
+from img2tri.conforming import Sizes, conform, trace_outlines
 from img2tri.raster.zones import Zones
 from img2tri.records import Frame
 
 
 def check(labels, *, background=0, edge_length=8.0):
     outlines, links = trace_outlines(Zones(labels, background), Frame(labels.shape))
-    made = conform(outlines, links, edge_length=edge_length)
+    made = conform(outlines, links, Sizes(edge_length))
     regions = outlines.labels[made.regions]
     oracles.check_valid(made.vertices, made.triangles)
     assert oracles.angles(made.vertices, made.triangles).min() >= 30 - 1e-6

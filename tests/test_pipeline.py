@@ -25,6 +25,7 @@ GRAINS = specimens.polycrystal(48, 6)
 Y, X = np.mgrid[:60, :80] + 0.5
 RAMP = np.where(np.hypot(X - 40, Y - 30) < 26, 100 + X, 0).astype(np.uint8)  # a disc whose gray grows to the right
 UNEVEN = (np.hypot(X - 30, Y - 25) < 20) & ~(np.hypot(X - 24, Y - 22) < 5)  # with a hole, and not its own mirror image
+SHAPES = UNEVEN | (np.hypot(X - 65, Y - 20) < 7)  # and a smaller one beside it
 COMB = specimens.MASKS["comb"].repeat(3, 0).repeat(3, 1)
 
 
@@ -141,6 +142,9 @@ CHANGES = {
     "iterations": (UNEVEN, {"smoothing": "uniform", "iterations": 1}, {"smoothing": "uniform", "iterations": 5}),
     "spacing": (UNEVEN, {"edge_length": "6px"}, {"edge_length": "6px", "spacing": 2}, {"edge_length": "6px", "spacing": (1, 2)}),
     "origin": (UNEVEN, {}, {"origin": "upper"}, {"origin": (5, -3)}),
+    "crop": (UNEVEN, {}, {"crop": (0, 0, 40, 60)}, {"crop": (20, 30, 50, 60)}),
+    "min_area": (UNEVEN, {}, {"min_area": 100}),
+    "largest": (SHAPES, {}, {"largest": True}),
     "seed": (UNEVEN * 255, {"recipe": "unstructured"}, {"recipe": "unstructured", "seed": 1}),
     "step": (UNEVEN * 255, {"recipe": "structured"}, {"recipe": "structured", "step": 7}),
     "n_boundary_points": (UNEVEN * 255, {"recipe": "unstructured"}, {"recipe": "unstructured", "n_boundary_points": 20}),
@@ -346,6 +350,35 @@ def test_origin_upper_gives_image_coordinates():
     assert upper.report.kept
 
 
+@pytest.mark.parametrize("spacing", [1, 0.5])
+def test_a_crop_lies_where_it_was(spacing):
+    left, bottom, right, top = 12 * spacing, 20 * spacing, 44 * spacing, 50 * spacing
+    mesh = mesh_image(UNEVEN, crop=(left, bottom, right, top), spacing=spacing, edge_length="5px")
+    part = UNEVEN[10:40, 12:44]
+    assert mesh.report.areas[1]["image"] == pytest.approx(part.sum() * spacing**2)
+    assert mesh.frame.bounds == (left, bottom, right, top)
+    y, x = np.nonzero(part)
+    assert np.abs(centroid(mesh) / spacing - [x.mean() + 12.5, 60 - y.mean() - 10.5]).max() < 0.1
+    assert mesh.report.kept
+
+
+def test_specks_and_holes_are_removed_and_listed():
+    mesh = mesh_image(SHAPES, min_area="200px2", edge_length=5)
+    assert mesh.report.topology[1]["found"] == (1, 0)
+    removed = mesh.report.counted["removed"]
+    assert (removed["specks"], removed["holes"]) == (1, 1)
+    assert same(mesh, mesh_image(SHAPES, min_area=200, edge_length=5))
+    half = mesh_image(SHAPES, min_area=50, edge_length=2.5, spacing=0.5)
+    assert np.array_equal(half.vertices, mesh.vertices / 2)
+
+
+def test_largest_keeps_one_component():
+    mesh = mesh_image(SHAPES, largest=True, edge_length=5)
+    assert oracles.mesh_topology(mesh.triangles) == (1, 1)
+    assert mesh.vertices[:, 0].max() < 52
+    assert mesh.report.kept
+
+
 def test_page_is_the_image_of_a_file(tmp_path):
     first, second = (Image.fromarray(specimens.disc(40, r).astype(np.uint8) * 255) for r in (8, 15))
     path = tmp_path / "pages.tif"
@@ -534,6 +567,11 @@ REFUSED = {
     "min_angle above": (DISC, {"min_angle": 40}, ParameterError, "min_angle: expected a number of at least 0 and of at most 33, found 40"),
     "tolerance": (DISC, {"tolerance": 0}, ParameterError, "tolerance: expected a number above 0, found 0"),
     "tolerance unit": (DISC, {"tolerance": "1mm"}, ParameterError, "tolerance: expected a number with a unit, like 8, '8px'"),
+    "crop": (DISC, {"crop": (1, 2, 3)}, ParameterError, "crop: expected"),
+    "crop outside": (DISC, {"crop": (100, 100, 120, 120)}, Img2triError, "crop"),
+    "min_area": (DISC, {"min_area": -1}, ParameterError, "min_area: expected a number of at least 0, found -1"),
+    "min_area unit": (DISC, {"min_area": "4px"}, ParameterError, "min_area: expected a number with a unit, like 4 or '4px2', found '4px'"),
+    "nothing large enough": (DISC, {"min_area": 2000}, ImageError, "found none"),
     "spacing pair": (DISC, {"spacing": (1, 2, 3)}, ParameterError, "spacing: expected a pair of numbers, found 3"),
     "spacing word": (DISC, {"spacing": "mm"}, ParameterError, "spacing: expected a number, a pair (dx, dy), 'file' or None, found 'mm'"),
     "spacing of an array": (DISC, {"spacing": "file"}, ParameterError, "spacing: 'file' expected a resolution"),

@@ -6,7 +6,7 @@ import numpy as np
 import oracles
 import pytest
 import strategies
-from hypothesis import assume, given, note
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from strategies import QUICK, THOROUGH
 
@@ -23,9 +23,8 @@ OPTIONS = st.fixed_dictionaries(
 )
 
 
-def check_promises(mesh, labels, *, background, tolerance, min_angle, connectivity, edge_length=None):
+def check_promises(mesh, labels, *, background, tolerance, min_angle, connectivity, **_):
     """All oracles, and the report of the same mind."""
-    note(f"{mesh!r} at edge length {edge_length}")
     v, t, r = mesh.vertices, mesh.triangles, mesh.regions
     oracles.check_valid(v, t)
     assert oracles.angles(v, t).min() >= min_angle - 1e-6

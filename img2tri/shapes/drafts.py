@@ -70,8 +70,8 @@ class Draft:
         return Outlines(np.stack([place.real, place.imag], axis=1), index, starts, o.left, o.right, o.labels)
 
 
-def draft(outlines: Outlines, links: Links, *, spacing: float, keep_corners: bool = False) -> Draft:
-    """Set breaks evenly along each chain, about `spacing` px apart.
+def draft(outlines: Outlines, links: Links, *, spacing: float | Floats, keep_corners: bool = False) -> Draft:
+    """Set breaks along each chain, `spacing` px apart: one length, or one at each entry (k,).
 
     With `keep_corners` no corner of an outline is ever blunted.
     """
@@ -80,19 +80,21 @@ def draft(outlines: Outlines, links: Links, *, spacing: float, keep_corners: boo
     z = dense[outlines.indices]
     step = np.abs(np.diff(z, prepend=z[:1]))
     step[starts[:-1]] = 0
-    arc = np.cumsum(step)
-    begin, length = arc[starts[:-1]], arc[starts[1:] - 1] - arc[starts[:-1]]
+    # How many pieces fit before each entry: the integral of 1 / spacing along the chain.
+    per_length = 1 / np.broadcast_to(np.asarray(spacing, np.float64), (k,))
+    way = np.cumsum(step * (per_length + np.roll(per_length, 1)) / 2)
+    begin, length = way[starts[:-1]], way[starts[1:] - 1] - way[starts[:-1]]
     size = np.diff(starts) - 1
     least = np.where(links.rings, np.minimum(RING, size), 1)
-    count = np.clip(np.round(length / spacing).astype(np.int64), least, size)
+    count = np.clip(np.round(length).astype(np.int64), least, size)
 
-    # Even places along the arc; each is taken by the nearest dense point, moved there.
+    # Even places along the way; each is taken by the nearest dense point, moved there.
     which = np.repeat(np.arange(len(count)), count)
     number = np.arange(len(which)) - np.repeat(np.cumsum(count) - count, count)
     wanted = begin[which] + length[which] * number / count[which]
-    after = np.clip(np.searchsorted(arc, wanted), starts[which] + 1, starts[which + 1] - 1)
-    at = after - (wanted - arc[after - 1] < arc[after] - wanted)
-    share = (wanted - arc[after - 1]) / np.maximum(arc[after] - arc[after - 1], 1e-12)
+    after = np.clip(np.searchsorted(way, wanted), starts[which] + 1, starts[which + 1] - 1)
+    at = after - (wanted - way[after - 1] < way[after] - wanted)
+    share = (wanted - way[after - 1]) / np.maximum(way[after] - way[after - 1], 1e-12)
     place = z[after - 1] + share * (z[after] - z[after - 1])
     breaks, moved = np.zeros(k, bool), np.zeros(k, np.complex128)
     inner = (number > 0) & (at > starts[which]) & (at < starts[which + 1] - 1)

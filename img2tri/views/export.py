@@ -90,6 +90,7 @@ def export(
     img2tri.errors.ParameterError: deck: expected only with .inp, found True for plate.bdf
     """
     suffix = known_suffix(path, EXPORTS)
+    writable(path, EXPORTS)
     given = {"version": version, "deck": deck, "plane": plane, "timed": timed}
     options = {name: value for name, value in given.items() if value is not None}
     for name, value in options.items():

@@ -11,6 +11,8 @@ What each format holds::
     .glb     float32       meshes `region_3` in colours   -, extras
     .vtp     float64       cell array `region`            cell arrays, field data
     .vtu     float64       cell array `region`            cell arrays, comments
+
+The formats of solvers, which hold names and sets of edges besides, are in `img2tri.views.export`.
 """
 
 from __future__ import annotations
@@ -25,6 +27,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from img2tri.errors import FileError, MeshError
 from img2tri.records import Floats, Ints
+from img2tri.views.formats.reading import READERS, by_text
 from img2tri.views.pyvista_objects import vtp, vtu
 from img2tri.views.readers import by_trimesh
 from img2tri.views.storing import known_suffix, store, writable
@@ -106,7 +109,7 @@ def load(path: str | os.PathLike[str]) -> tuple[Floats, Ints, Ints]:
     Parameters
     ----------
     path
-        A file that ends in .stl, .ply, .obj, .off, .glb, .vtp or .vtu, whose triangles lie in one plane of constant z.
+        A file that ends in .stl, .ply, .obj, .off, .glb, .vtp, .vtu, .msh or .bdf, whose triangles lie in one plane of constant z.
 
     Returns
     -------
@@ -124,7 +127,7 @@ def load(path: str | os.PathLike[str]) -> tuple[Floats, Ints, Ints]:
     MeshError
         If it holds no triangles, other cells, or triangles in space, such as a solid.
     """
-    readers = {suffix: form.read for suffix, form in FORMATS.items() if form.read}
+    readers = {suffix: form.read for suffix, form in FORMATS.items() if form.read} | dict.fromkeys(READERS, by_text)
     suffix = known_suffix(path, readers)
     try:
         data = Path(path).read_bytes()

@@ -19,6 +19,7 @@ const xy = array("vertices", Float32Array), corners = array("triangles", Uint32A
 const values = { quality: array("quality", Uint8Array), angle: array("angle", Uint8Array), region: array("regions", Uint32Array) };
 const count = corners.length / 3;
 const RAMP = view.ramp.map(hex => [0, 2, 4].map(i => parseInt(hex.slice(i, i + 2), 16)));
+const INK = "#15191e", RED = "#e3120b";  // over colours, and over the bare image as in the figures of the paper
 const LEVELS = 32;
 const ramp = t => {
   const p = t * (RAMP.length - 1), i = Math.min(Math.floor(p), RAMP.length - 2), f = p - i;
@@ -26,12 +27,12 @@ const ramp = t => {
 };
 const LEVEL_COLOURS = Array.from({ length: LEVELS }, (_, i) => ramp(i / (LEVELS - 1)));
 const REGION_COLOURS = view.regions.map(region => [1, 3, 5].map(i => parseInt(region.colour.slice(i, i + 2), 16)));
-const FILLS = { none: "None", region: "Regions", quality: "Quality", angle: "Smallest angle" };
+const FILLS = { none: "None", region: "Region", quality: "Quality", angle: "Smallest angle" };
 const LAYERS = { image: "Image", edges: "Edges", outline: "Outline" };
 const LIGHT = 20000;   // triangles drawn at once, without a pause
 const PART = 20000;    // triangles drawn between two pauses
 const FINE = 2.2;      // px of the screen; what is smaller is a dot
-const state = { fill: view.regions.length > 1 ? "region" : "quality", image: view.image, edges: true, outline: true, x: 0, y: 0, zoom: 1, hover: -1 };
+const state = { fill: "region", image: view.image, edges: true, outline: true, x: 0, y: 0, zoom: 1, hover: -1 };
 
 // ---- where the triangles are: cells of a grid, each with its triangles in one stretch of `order` ----
 
@@ -174,7 +175,7 @@ function fill(context, part, size, px, py) {
 /** Edges, fainter where triangles are small, none where they would only darken the picture. */
 function edges(context, part, size, px, py) {
   const d = dpr(), classes = [[4, 7, 0.22, 0.5], [7, 13, 0.36, 0.7], [13, Infinity, 0.55, 0.9]];
-  context.strokeStyle = ink.line;
+  context.strokeStyle = state.fill === "none" ? RED : INK;
   for (const [least, most, alpha, width] of classes) {
     context.globalAlpha = alpha; context.lineWidth = width * d;
     context.beginPath();
@@ -196,7 +197,7 @@ function edges(context, part, size, px, py) {
 }
 
 function outline(context, px, py) {
-  context.strokeStyle = ink.line; context.lineWidth = 1.5 * dpr(); context.globalAlpha = 0.9;
+  context.strokeStyle = state.fill === "none" ? RED : INK; context.lineWidth = 1.5 * dpr(); context.globalAlpha = 0.9;
   for (let from = 0; from < borders.length; from += 2000) {
     context.beginPath();
     for (let k = from; k < Math.min(from + 2000, borders.length); k += 2) {
@@ -224,7 +225,7 @@ function frame() {
   screen.globalAlpha = 1; screen.imageSmoothingEnabled = true;
   if (done.at) {
     const k = at.s / done.at.s, dx = (done.at.x - at.x) * at.s + (w - done.at.w * k) / 2, dy = (done.at.y - at.y) * at.s + (h - done.at.h * k) / 2;
-    screen.globalAlpha = state.image ? 0.72 : 1;
+    screen.globalAlpha = state.image && state.fill === "region" ? 0.72 : 1;  // colours that are read by a scale stay as they are
     screen.drawImage(done.fill.canvas, dx, dy, done.at.w * k, done.at.h * k);
     screen.globalAlpha = 1;
     screen.drawImage(done.lines.canvas, dx, dy, done.at.w * k, done.at.h * k);
@@ -246,7 +247,7 @@ function marks(px, py, d) {
   for (const place of view.places) {
     const x = px(place.x), y = py(place.y), chosen = place === state.place;
     if (!place.number && !chosen) continue;
-    const r = (chosen ? 15 : place.first ? 11 : 7) * d;
+    const r = (chosen ? 15 : place.first ? 11 : 5) * d;
     screen.beginPath(); screen.arc(x, y, r, 0, 7);
     screen.lineWidth = 5 * d; screen.strokeStyle = ink.card; screen.globalAlpha = 0.8; screen.stroke(); screen.globalAlpha = 1;
     screen.lineWidth = 2.4 * d; screen.strokeStyle = place.number ? ink.bad : ink.accent; screen.stroke();
@@ -277,9 +278,11 @@ function changed() {
 }
 
 function fit() {
+  // All of the mesh, in the room between the tools above and what is below.
   const w = canvas.clientWidth, h = canvas.clientHeight, [x0, y0, x1, y1] = view.box;
-  state.x = (x0 + x1) / 2; state.y = (y0 + y1) / 2;
-  state.zoom = Math.min((w - 56) / (x1 - x0), (h - 120) / (y1 - y0));
+  const top = $("tools").offsetTop + $("tools").offsetHeight + 16, foot = 60;
+  state.zoom = Math.min((w - 40) / (x1 - x0), Math.max(h - top - foot, 100) / (y1 - y0));
+  state.x = (x0 + x1) / 2; state.y = (y0 + y1) / 2 + (foot - top) / 2 / state.zoom;
 }
 
 const least = () => Math.min(canvas.clientWidth / view.size[0], canvas.clientHeight / view.size[1]) / 4;
@@ -366,7 +369,7 @@ function button(parent, label, role, on) {
 /** Colours of the style sheet, as light or dark has them: only an element that uses one says what it is. */
 function inked() {
   const probe = document.body.appendChild(document.createElement("i")), colour = name => { probe.style.color = `var(--${name})`; return getComputedStyle(probe).color; };
-  ink = Object.fromEntries(["line", "quiet", "bad", "card", "accent"].map(name => [name, colour(name)]));
+  ink = Object.fromEntries(["quiet", "bad", "card", "accent"].map(name => [name, colour(name)]));
   probe.remove();
 }
 
@@ -382,7 +385,7 @@ function redrawn() {
 
 const buttons = {};
 for (const [name, label] of Object.entries(FILLS))
-  if (name !== "region" || view.regions.length > 1) buttons[name] = button("fill", label, "radio", () => { state.fill = name; redrawn(); });
+  buttons[name] = button("fill", label, "radio", () => { state.fill = name; redrawn(); });
 for (const [name, label] of Object.entries(LAYERS))
   if (name !== "image" || view.image) buttons[name] = button("layers", label, "", () => { state[name] = !state[name]; redrawn(); });
 for (const made of document.querySelectorAll("[data-zoom]"))
@@ -415,7 +418,7 @@ function resized() {
 new ResizeObserver(() => {
   const first = !done.at && !job;
   resized();
-  if (first) addressed(); else changed();
+  if (first) addressed(); else { frame(); changed(); }  // at once, as the new size has emptied the canvas
 }).observe(canvas);
 addEventListener("hashchange", addressed);
 if (view.image) {

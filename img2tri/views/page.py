@@ -1,8 +1,8 @@
 """A page about a mesh: the mesh, its image and its certificate -> one HTML file that needs nothing but itself.
 
 The page holds the image as a PNG, the mesh as raw arrays in base64, the certificate as JSON, and the script that draws them; it is read
-without a network, by any browser, years later. What it says in words and tables is in `img2tri.views.tables`; how it looks and draws, in
-page.html and page.js beside this file.
+without a network, by any browser, years later. What it says in words and tables is in `img2tri.views.tables` and
+`img2tri.views.charts`; how it looks and draws, in page.html and page.js beside this file.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from img2tri.errors import MeshError
 from img2tri.records import Floats, Frame, Ints
 from img2tri.views import tables
 from img2tri.views.bodies import unique_names
+from img2tri.views.charts import RAMP, chart
 from img2tri.views.colours import palette
 from img2tri.views.edges import bordering, unique_edges
 from img2tri.views.png import png
@@ -86,7 +87,7 @@ def page(
     Examples
     --------
     >>> text = page([[0, 0], [4, 0], [0, 4]], [[0, 1, 2]], q=[0.83], min_angle=[45.0], frame=Frame((4, 4)), report='{"n_triangles": 1}')
-    >>> text[:15], "http" in text
+    >>> text[:15], "://" in text
     ('<!doctype html>', False)
     """
     v, t = plane_mesh(vertices, triangles)
@@ -99,15 +100,15 @@ def page(
     colours = [f"#{red:02x}{green:02x}{blue:02x}" for red, green, blue in palette(len(present)).tolist()]
     edges, sides = unique_edges(t)
     places = tables.places(facts)
-    xy = _page_coordinates(v, frame)
+    xy, spots = _page_coordinates(v, frame), _page_coordinates(np.array([place.at for place in places]).reshape(-1, 2), frame)
     view = {
         **_placed(xy, edges, frame, unit),
         "image": image is not None,
-        "ramp": tables.RAMP,
+        "ramp": RAMP,
         "regions": [{"name": called[label], "colour": colour} for label, colour in zip(present.tolist(), colours, strict=True)],
         "places": [
             {"x": x, "y": y, "number": place.number, "first": place.first}
-            for place, (x, y) in zip(places, _page_coordinates(np.array([p.at for p in places]).reshape(-1, 2), frame).tolist(), strict=True)
+            for place, (x, y) in zip(places, spots.tolist(), strict=True)
         ],
     }
     arrays = {
@@ -126,8 +127,8 @@ def page(
         "tiles": tables.tiles(facts, len(v), len(t), len(present), quality, angle),
         "warnings": tables.warnings(facts, places),
         "certificate": tables.certificate(facts, places),
-        "charts": tables.chart("Quality", "q = 2 r / R; 1 is equilateral", quality, 1.0, "")
-        + tables.chart("Smallest angle", "of each triangle; 60° is equilateral", angle, _LARGEST_ANGLE, "°"),
+        "charts": chart("Quality", "q = 2 r / R; 1 is equilateral", quality, 1.0, "")
+        + chart("Smallest angle", "of each triangle; 60° is equilateral", angle, _LARGEST_ANGLE, "°"),
         "regions": tables.regions(facts, [*zip(present.tolist(), called.values(), colours, counted, strict=True)]),
         "command": tables.text(command),
         "settings": tables.settings(facts),
@@ -175,8 +176,8 @@ def _bytes(values: Floats) -> NDArray[np.uint8]:
 
 
 def _thinned(image: NDArray[Any]) -> NDArray[Any]:
-    step = max(1, -(-max(image.shape[:2]) // _PIXELS)) if image.ndim > 1 else 1
-    return image[::step, ::step]
+    step = max(1, -(-max(image.shape, default=1) // _PIXELS))
+    return image[::step, ::step] if image.ndim > 1 else image
 
 
 def _embedded(name: str, data: bytes) -> str:

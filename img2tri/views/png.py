@@ -1,7 +1,7 @@
 """An image as the bytes of a PNG file: an array -> 8 bits per channel, compressed.
 
-In a dozen lines of the standard library, so that neither Pillow nor matplotlib has to be loaded to show a picture on a page. The format is that
-of the PNG specification, third edition, W3C 2025.
+In a dozen lines of the standard library, so that neither Pillow nor matplotlib has to be loaded to show a picture on a page. The format is
+that of the PNG specification, third edition, W3C 2025.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ _COLOUR_TYPE = {1: 0, 3: 2, 4: 6}
 
 
 def png(image: ArrayLike) -> bytes:
-    """Return the bytes of a PNG file.
+    r"""Return the bytes of a PNG file.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def png(image: ArrayLike) -> bytes:
     Examples
     --------
     >>> png([[0, 1], [1, 0]])[:8]
-    b'\\x89PNG\\r\\n\\x1a\\n'
+    b'\x89PNG\r\n\x1a\n'
     """
     pixels = np.asarray(image)
     channels = 1 if pixels.ndim == 2 else pixels.shape[2] if pixels.ndim == 3 else 0

@@ -187,7 +187,8 @@ def rings(vertices: Floats, triangles: Ints, twins: Ints | None = None) -> tuple
         step = step[step]
     ring = np.unique(lowest, return_inverse=True)[1]
     a, b = (vertices[:, :2] - vertices[0, :2])[np.stack([triangles.ravel()[free], triangles.ravel()[_after(free)]])]
-    return free, ring, np.bincount(ring, (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2)
+    area = np.bincount(ring, (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2).astype(np.float64)
+    return free.astype(np.int64), ring.astype(np.int64), area
 
 
 def _after(sides: Ints) -> Ints:

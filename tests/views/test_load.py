@@ -149,7 +149,7 @@ def test_a_file_that_is_not_there_is_named(tmp_path):
 
 
 def test_an_unknown_suffix_lists_the_known_ones(tmp_path):
-    with pytest.raises(FileError, match=r"ends in \.glb, \.obj, \.off, \.ply, \.stl, \.vtp or \.vtu, found '\.3mf'"):
+    with pytest.raises(FileError, match=r"ends in \.bdf, \.glb, \.msh, \.obj, \.off, \.ply, \.stl, \.vtp or \.vtu, found '\.3mf'"):
         load(tmp_path / "a.3mf")
 
 

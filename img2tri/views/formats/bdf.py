@@ -12,7 +12,7 @@ import numpy as np
 
 from img2tri.records import Floats
 from img2tri.views.cells import Cells
-from img2tri.views.formats.text import fitted, in_lines, notes, numbered
+from img2tri.views.formats.text import MARK, fitted, in_lines, notes, numbered
 
 # Card of each kind, and its order of the nodes where that is not the one of VTK: upright edges come before those of the top.
 _CARDS = {"triangle": "CTRIA3", "triangle6": "CTRIA6", "wedge": "CPENTA", "wedge15": "CPENTA"}
@@ -28,12 +28,13 @@ def bdf(made: Cells) -> dict[str, bytes]:
     dict
         The bytes of the file, under "".
     """
-    lines = [*notes(made.texts, "$ "), "CEND", "BEGIN BULK", *_grid(made.points)]
+    lines = [f"$ {MARK}", *notes(made.texts, "$ "), "CEND", "BEGIN BULK", *_grid(made.points)]
     cells = made.cells[:, ORDERS.get(made.kind, slice(None))] + 1
     for label, name in made.names.items():
         mine, number = np.flatnonzero(made.regions == label), made.ids[label]
         lines.append(f"$HMNAME COMP {number:>19}{_quoted(name)}")
-        lines += numbered(_template(_CARDS[made.kind], cells.shape[1]), cells[mine], [f"{i:<8}" for i in (mine + 1).tolist()], f"{number:<8}")
+        numbers = [f"{i:<8}" for i in (mine + 1).tolist()]
+        lines += numbered(_template(_CARDS[made.kind], cells.shape[1]), cells[mine], numbers, f"{number:<8}")
     for name in made.sides:
         lines.append(f"$HMSET {made.tags[name]:>8} {1:>8} {_quoted(name)}")
         nodes = (np.unique(made.facets(name)) + 1).tolist()

@@ -18,7 +18,7 @@ import numpy as np
 from img2tri.errors import choice
 from img2tri.records import Bools, Floats
 from img2tri.views.cells import Cells
-from img2tri.views.formats.text import fitted, identifiers, in_lines, notes, numbered
+from img2tri.views.formats.text import MARK, fitted, identifiers, in_lines, notes, numbered
 from img2tri.views.sets import rings
 
 PLANES = ("stress", "strain")
@@ -56,12 +56,13 @@ def inp(made: Cells, *, deck: bool = False, plane: str = "stress") -> dict[str, 
     kind = _TYPES[made.kind] if made.solid else f"{letters}{_IN_PLANE[made.kind]}"
     named = identifiers(chain(made.names.values(), made.sides), taken=("HELD", "DRAWN"))
     lines = ["*HEADING", "img2tri"] if deck else []
-    lines += notes(made.texts, "** ")
+    lines += [f"** {MARK}", *notes(made.texts, "** ")]
     lines += notes({plain: f"named {name}" for name, plain in named.items() if plain != name}, "** ")
     lines += ["*NODE", *_nodes(made.points)]
     for label, name in made.names.items():
         mine = np.flatnonzero(made.regions == label)
-        lines += [f"*ELEMENT, TYPE={kind}, ELSET={named[name]}", *numbered("{}" + ", {}" * made.cells.shape[1], made.cells[mine] + 1, mine + 1)]
+        lines.append(f"*ELEMENT, TYPE={kind}, ELSET={named[name]}")
+        lines += numbered("{}" + ", {}" * made.cells.shape[1], made.cells[mine] + 1, mine + 1)
     for name, sides in made.sides.items():
         lines += [f"*NSET, NSET={named[name]}", *in_lines((np.unique(made.facets(name)) + 1).tolist(), 16)]
         numbers = _FACES[made.solid][sides[:, 1]]

@@ -1,8 +1,8 @@
 """MSH, the format of Gmsh, version 4.1 or 2.2, in text: regions and sets of facets are physical groups with their names.
 
-Physical groups and elementary entities have the same numbers: a region that of its label, or, as the format counts from 1, the next free one
-for labels below 1; a set of facets its tag. The format is described in the Gmsh manual, "MSH file format". Written here because meshio
-refuses to write triangles and edges into one file of version 4.1.
+Physical groups and elementary entities have the same numbers: a region that of its label, or, as the format counts from 1, the next free
+one for labels below 1; a set of facets its tag. Cells keep their order. The format is described in the Gmsh manual, "MSH file format".
+Written here because meshio refuses to write triangles and edges into one file of version 4.1.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import numpy as np
 from img2tri.errors import ParameterError
 from img2tri.records import Floats, Ints
 from img2tri.views.cells import Cells
-from img2tri.views.formats.text import notes, numbered
+from img2tri.views.formats.text import MARK, notes, numbered
 from img2tri.views.writers import rows
 
 # Gmsh's number of each type of element, and its order of the nodes where that is not the one of VTK.
@@ -46,23 +46,32 @@ def msh(made: Cells, *, version: str = "4.1") -> dict[str, bytes]:
         raise ParameterError(f"version: expected '4.1' or '2.2', found {version!r}")
     groups = _groups(made)
     lines = ["$MeshFormat", f"{version} 0 8", "$EndMeshFormat"]
-    if made.texts:
-        lines += ["$Comments", *notes(made.texts, ""), "$EndComments"]
-    names = ['{} {} "{}"'.format(*key, _quoted(name)) for key, (name, _) in groups.items()]
+    lines += ["$Comments", MARK, *notes(made.texts, ""), "$EndComments"]
+    names = ['{} {} "{}"'.format(*key, _quoted(name)) for key, (name, *_) in groups.items()]
     lines += ["$PhysicalNames", str(len(names)), *names, "$EndPhysicalNames"]
     lines += _version_4(made.points, groups) if version == "4.1" else _version_2(made.points, groups)
     return {"": ("\n".join(lines) + "\n").encode()}
 
 
-_Groups = dict[tuple[int, int], tuple[str, Ints]]
+_Groups = dict[tuple[int, int], tuple[str, Ints, Ints]]
 
 
 def _groups(made: Cells) -> _Groups:
-    """Return (dimension, number) -> name and elements, facets first; numbers of nodes begin with 1."""
-    inside = 3 if made.solid else 2
+    """Return (dimension, number) -> name, elements and their numbers; numbers of nodes begin with 1.
+
+    Facets come first. The cells are numbered after them in the order of the mesh, whatever their group.
+    """
+    inside, count = 3 if made.solid else 2, 0
+    groups: _Groups = {}
+    for name in made.sides:
+        facets = made.facets(name) + 1
+        groups[inside - 1, made.tags[name]] = name, facets, count + 1 + np.arange(len(facets))
+        count += len(facets)
     cells = made.cells[:, ORDERS.get(made.kind, slice(None))] + 1
-    groups: _Groups = {(inside - 1, made.tags[name]): (name, made.facets(name) + 1) for name in made.sides}
-    return groups | {(inside, made.ids[label]): (name, cells[made.regions == label]) for label, name in made.names.items()}
+    for label, name in made.names.items():
+        mine = np.flatnonzero(made.regions == label)
+        groups[inside, made.ids[label]] = name, cells[mine], count + 1 + mine
+    return groups
 
 
 def _type(dimension: int, elements: Ints, inside: int) -> int:
@@ -75,40 +84,36 @@ def _type(dimension: int, elements: Ints, inside: int) -> int:
 
 def _version_2(points: Floats, groups: _Groups) -> list[str]:
     lines = ["$Nodes", str(len(points)), *numbered("{} {!r} {!r} {!r}", points, np.arange(1, len(points) + 1)), "$EndNodes"]
-    lines += ["$Elements", str(sum(len(elements) for _, elements in groups.values()))]
-    inside, count = max(groups)[0], 0
-    for (dimension, number), (_, elements) in groups.items():
+    lines += ["$Elements", str(sum(len(elements) for _, elements, _ in groups.values()))]
+    inside = max(groups)[0]
+    for (dimension, group), (_, elements, numbers) in groups.items():
         template = "{} {} 2 {} {}" + " {}" * elements.shape[1]
-        numbers = np.arange(len(elements)) + count + 1
-        lines += numbered(template, elements, numbers, _type(dimension, elements, inside), number, number)
-        count += len(elements)
+        lines += numbered(template, elements, numbers, _type(dimension, elements, inside), group, group)
     return [*lines, "$EndElements"]
 
 
 def _version_4(points: Floats, groups: _Groups) -> list[str]:
     """Nodes belong to the first entity that has them, facets before cells: so those on a boundary are known to be there."""
     owner = np.full(len(points), len(groups))
-    for i, (_, elements) in reversed(list(enumerate(groups.values()))):
+    for i, (_, elements, _) in reversed(list(enumerate(groups.values()))):
         owner[elements.ravel() - 1] = i
     order = np.argsort(owner, kind="stable")
     counts = np.bincount(owner, minlength=len(groups))[: len(groups)]
     mine = np.split(order[: counts.sum()], np.cumsum(counts)[:-1])
-    inside, total = max(groups)[0], sum(len(elements) for _, elements in groups.values())
+    inside, total = max(groups)[0], sum(len(elements) for _, elements, _ in groups.values())
 
     lines = ["$Entities", " ".join(str(sum(dimension == d for dimension, _ in groups)) for d in range(4))]
-    for (_, number), (_, elements) in groups.items():
+    for (_, group), (_, elements, _) in groups.items():
         corners = points[elements.ravel() - 1]
         box = " ".join(repr(float(x)) for x in (*corners.min(axis=0), *corners.max(axis=0)))
-        lines.append(f"{number} {box} 1 {number} 0")
+        lines.append(f"{group} {box} 1 {group} 0")
     lines += ["$EndEntities", "$Nodes", f"{len(groups)} {counts.sum()} 1 {len(points)}"]
-    for (dimension, number), nodes in zip(groups, mine, strict=True):
-        lines += [f"{dimension} {number} 0 {len(nodes)}", *map(str, (nodes + 1).tolist()), *rows("{!r} {!r} {!r}", points[nodes])]
+    for (dimension, group), nodes in zip(groups, mine, strict=True):
+        lines += [f"{dimension} {group} 0 {len(nodes)}", *map(str, (nodes + 1).tolist()), *rows("{!r} {!r} {!r}", points[nodes])]
     lines += ["$EndNodes", "$Elements", f"{len(groups)} {total} 1 {total}"]
-    count = 0
-    for (dimension, number), (_, elements) in groups.items():
-        lines.append(f"{dimension} {number} {_type(dimension, elements, inside)} {len(elements)}")
-        lines += numbered("{}" + " {}" * elements.shape[1], elements, np.arange(len(elements)) + count + 1)
-        count += len(elements)
+    for (dimension, group), (_, elements, numbers) in groups.items():
+        lines.append(f"{dimension} {group} {_type(dimension, elements, inside)} {len(elements)}")
+        lines += numbered("{}" + " {}" * elements.shape[1], elements, numbers)
     return [*lines, "$EndElements"]
 
 

@@ -36,9 +36,9 @@ class Found:
     cells, kind
         As in `img2tri.views.cells.Cells`.
     regions
-        (m,) int64, the number of each cell's physical group or property; 0 without one.
+        (m,) int64, the number of each cell's physical group or property, or the label in its name; 0 without one.
     names
-        Number -> name of the region; those without a name are missing.
+        Label -> name of the region; those without a name are missing.
     facets
         Name of each set -> the nodes of its facets, (k, 2 to 8) int64, or, where a format knows sets of nodes only, its nodes (k, 1).
     """
@@ -51,7 +51,8 @@ class Found:
     facets: dict[str, Ints]
 
 
-_Blocks = list[tuple[int, int, int, Ints]]  # dimension, physical group, Gmsh's type, rows of node numbers
+# Dimension, physical group, Gmsh's type, and rows that hold the number of an element and those of its nodes.
+_Blocks = list[tuple[int, int, int, Ints]]
 
 
 def read_msh(data: bytes) -> Found:
@@ -64,7 +65,7 @@ def read_msh(data: bytes) -> Found:
     ValueError, KeyError, IndexError
         If the file is damaged, in binary, or no MSH.
     """
-    sections = {name: body for name, body in re.findall(r"^\$(\w+)\s*\n(.*?)^\$End\1\s*$", data.decode(), re.DOTALL | re.MULTILINE)}
+    sections = dict(re.findall(r"^\$(\w+)\s*\n(.*?)^\$End\1\s*$", data.decode(), re.DOTALL | re.MULTILINE))
     version, binary, _ = sections["MeshFormat"].split()
     if version not in msh.VERSIONS or binary != "0":
         raise ValueError(f"expected MSH 2.2 or 4.1 in text, found {version} in {'text' if binary == '0' else 'binary'}")
@@ -76,18 +77,15 @@ def read_msh(data: bytes) -> Found:
         for dimension, group, name in re.findall(r'^\s*(\d+)\s+(\d+)\s+"(.*)"\s*$', sections.get("PhysicalNames", ""), re.MULTILINE)
     }
     top = max((dimension for dimension, *_ in blocks), default=0)
-    inside = [(group, _GMSH.get(number, ""), place[rows]) for dimension, group, number, rows in blocks if dimension == top]
+    inside = [(_GMSH.get(number, ""), group, rows) for dimension, group, number, rows in blocks if dimension == top]
+    kind, table = _one_kind([(kind, np.insert(rows, 1, group, axis=1)) for kind, group, rows in inside])
     facets = defaultdict(list)
     for dimension, group, _, rows in blocks:
         if dimension == top - 1 and (dimension, group) in names:
-            facets[names[dimension, group]].append(place[rows])
-    kind, cells = _one_kind([(kind, rows) for _, kind, rows in inside])
-    if kind in msh.ORDERS:
-        cells = cells[:, np.argsort(msh.ORDERS[kind])]
-    regions = np.repeat([group for group, *_ in inside], [len(rows) for *_, rows in inside])
+            facets[names[dimension, group]].append(place[rows[:, 1:]])
+    alike = {name: np.concatenate(parts) for name, parts in facets.items() if len({part.shape[1] for part in parts}) == 1}
     called = {group: name for (dimension, group), name in names.items() if dimension == top}
-    alike = {name: np.concatenate(rows) for name, rows in facets.items() if len({part.shape[1] for part in rows}) == 1}
-    return _whole(points, cells, kind, regions, called, alike)
+    return _whole(points, table, place, kind, msh.ORDERS, called, alike)
 
 
 def read_bdf(data: bytes) -> Found:
@@ -108,26 +106,50 @@ def read_bdf(data: bytes) -> Found:
         if card == "GRID":
             places[int(fields[0])] = [_real(field) for field in fields[2:5]]
         elif card in {name for name, _ in _NASTRAN}:
-            numbers = [int(field) for field in fields if field]
-            rows[_NASTRAN[card, len(numbers) - 2]].append(numbers)
+            row = [int(field) for field in fields if field]
+            rows[_NASTRAN[card, len(row) - 2]].append(row)
         elif card == "SET1":
             sets[int(fields[0])] = [int(field) for field in fields[1:] if field]
-    kind, table = _one_kind([(kind, np.array(numbers)) for kind, numbers in rows.items()])
-    table = table[np.argsort(table[:, 0], kind="stable")]
+    kind, table = _one_kind([(kind, np.array(row)) for kind, row in rows.items()])
     numbers = np.array(sorted(places))
     place = np.full(int(numbers.max(initial=0)) + 1, -1)
     place[numbers] = np.arange(len(numbers))
-    cells = place[table[:, 2:]][:, np.argsort(bdf.ORDERS[kind]) if kind in bdf.ORDERS else slice(None)]
     called = {int(number): name for number, name in re.findall(r'^\$HMNAME COMP\s+(\d+)\s*"(.*?)"', text, re.MULTILINE)}
     known = {int(number): name for number, name in re.findall(r'^\$HMSET\s+(\d+)\s+1\s*"(.*?)"', text, re.MULTILINE)}
     nodes = {known[number]: place[members][:, None] for number, members in sets.items() if number in known}
-    return _whole(np.array([places[number] for number in numbers.tolist()]), cells, kind, table[:, 1], called, nodes)
+    return _whole(np.array([places[number] for number in numbers.tolist()]), table, place, kind, bdf.ORDERS, called, nodes)
 
 
-def _whole(points: Floats, cells: Ints, kind: str, regions: Ints, names: dict[int, str], facets: dict[str, Ints]) -> Found:
+def by_text(data: bytes, suffix: str) -> tuple[Floats, Ints, Ints]:
+    """Read points (p, 3), triangles (k, 3) and regions (k,) of .msh or .bdf.
+
+    Raises
+    ------
+    MeshError
+        If the cells are no linear triangles.
+    ValueError, KeyError, IndexError
+        If the file is damaged, or of another kind.
+    """
+    found = READERS[suffix](data)
+    if found.kind != "triangle":
+        raise MeshError(f"expected triangles of three nodes, found {found.kind}")
+    return found.points, found.cells, found.regions
+
+
+def _whole(
+    points: Floats, table: Ints, place: Ints, kind: str, orders: dict[str, list[int]], names: dict[int, str], facets: dict[str, Ints]
+) -> Found:
+    """Put together what was read; `table` has for each cell its number, that of its region, and those of its nodes, in `orders`."""
+    table = table[np.argsort(table[:, 0], kind="stable")]
+    cells = place[table[:, 2:]][:, np.argsort(orders[kind]) if kind in orders else slice(None)]
     if any(rows.min(initial=0) < 0 for rows in (cells, *facets.values())):
         raise ValueError("it has cells with nodes that are not there")
-    return Found(points, cells, kind, regions.astype(np.int64), {n: name for n, name in names.items() if n in set(regions.tolist())}, facets)
+    numbers, which = np.unique(table[:, 1], return_inverse=True)
+    # A region that has no name of its own is called by its label, which may be below 1 though its number is not.
+    own = {number: re.fullmatch(r"region_(-?\d+)", name) for number, name in names.items()}
+    labels = {number: int(match[1]) if (match := own.get(number)) else number for number in numbers.tolist()}
+    called = {labels[number]: name for number, name in names.items() if number in labels}
+    return Found(points, cells, kind, np.array([labels[number] for number in numbers.tolist()])[which], called, facets)
 
 
 def _one_kind(parts: list[tuple[str, NDArray[Any]]]) -> tuple[str, NDArray[Any]]:
@@ -163,9 +185,9 @@ def _version_4(sections: dict[str, str]) -> tuple[Ints, Floats, _Blocks]:
     count, at, blocks = int(whole[0]), 4, []
     for _ in range(count):
         dimension, entity, kind, n = whole[at : at + 4].tolist()
-        rows = whole[at + 4 : at + 4 + n * (1 + _NODES[kind])].reshape(n, -1)[:, 1:]
+        rows = whole[at + 4 : at + 4 + n * (1 + _NODES[kind])].reshape(n, -1)
         blocks.append((dimension, group.get((dimension, entity), 0), kind, rows))
-        at += 4 + rows.size + n
+        at += 4 + rows.size
     order = np.argsort(all_numbers := np.concatenate(numbers), kind="stable")
     return all_numbers[order], np.concatenate(points)[order], blocks
 
@@ -176,7 +198,7 @@ def _version_2(sections: dict[str, str]) -> tuple[Ints, Floats, _Blocks]:
     rows: dict[tuple[int, int], list[list[int]]] = defaultdict(list)
     for line in sections["Elements"].splitlines()[1:]:
         numbers = [int(word) for word in line.split()]
-        rows[numbers[1], numbers[3] if numbers[2] else 0].append(numbers[3 + numbers[2] :])
+        rows[numbers[1], numbers[3] if numbers[2] else 0].append([numbers[0], *numbers[3 + numbers[2] :]])
     blocks = [(_DIMENSIONS[kind], group, kind, np.array(elements)) for (kind, group), elements in rows.items()]
     return nodes[:, 0].astype(np.int64), nodes[:, 1:], blocks
 
@@ -208,3 +230,6 @@ def _cards(text: str) -> Iterator[list[str]]:
 def _real(text: str) -> float:
     """Read a number as Nastran writes it: an exponent may follow without an E."""
     return float(re.sub(r"(?<=[\d.])([+-]\d+)$", r"E\1", text) if text else 0)
+
+
+READERS = {".msh": read_msh, ".bdf": read_bdf}

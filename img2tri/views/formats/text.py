@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from img2tri.views.writers import rows
 
+MARK = "written by img2tri"
 _PIECE = 70  # characters of a note in a line; some programs read 80 in all
 
 

@@ -1,11 +1,12 @@
 """VTU and VTKHDF, the formats of VTK for meshes of cells, with the named parts as field data.
 
-Cells and their values are those of the mesh, in its order, with the cell array ``region``. Under the name of each set of facets, the field data
-hold the nodes of its facets, (k, 2 to 8) integers; under the name of each region, its label. So pyvista, ParaView and meshio all find the
-names, and whoever only wants the cells is not disturbed by others between them. VTK writes some characters in names as they are, though
-XML or HDF5 take them for something else; in these names they become underscores.
+Cells and their values are those of the mesh, in its order, with the cell array ``region``. Under the name of each set of facets, the
+field data hold the nodes of its facets, (k, 2 to 8) integers; under the name of each region, its label. So pyvista, ParaView and meshio
+all find the names, and whoever only wants the cells is not disturbed by others between them. VTK writes some characters in names as they
+are, though XML or HDF5 take them for something else; these become underscores.
 
-VTK stamps each part of an HDF5 file with the time of writing, to no use; the stamps are set to 0, so that the same mesh gives the same file.
+VTK stamps each part of an HDF5 file with the time of writing, to no use; the stamps are set to 0, so that a mesh always gives the same
+file.
 """
 
 from __future__ import annotations
@@ -13,18 +14,20 @@ from __future__ import annotations
 import re
 import tempfile
 import time
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from img2tri.errors import FileError
+from img2tri.records import Floats, Ints
 from img2tri.views.cells import Cells
 
 if TYPE_CHECKING:
     import pyvista
 
-_TYPES = {"triangle": 5, "triangle6": 22, "wedge": 13, "wedge15": 26}
+TYPES = {"triangle": 5, "triangle6": 22, "wedge": 13, "wedge15": 26}
 # A message of the modification time in an object header of HDF5: type, size, flags, version, and the seconds.
 _STAMP = re.compile(rb"(\x12\x00\x08\x00.\x00\x00\x00\x01\x00\x00\x00)(....)", re.DOTALL)
 
@@ -39,18 +42,28 @@ def to_grid(made: Cells, *, texts: bool = True) -> pyvista.UnstructuredGrid:
     >>> grid.field_data["left"].tolist(), grid.field_data["region_7"].tolist()
     ([[2, 0]], [7])
     """
-    import pyvista
-
-    grid = pyvista.UnstructuredGrid({_TYPES[made.kind]: made.cells}, made.points)
-    for name, values in {**made.cell_data, "region": made.regions.astype(np.int32)}.items():
+    facets = {name: made.facets(name) for name in made.sides}
+    grid = grid_of(made.points, made.cells, made.kind, made.regions, made.names, facets)
+    for name, values in made.cell_data.items():
         grid.cell_data[name] = values
     for name, text in made.texts.items() if texts else ():
         grid.field_data[name] = [text]
-    for label, name in made.names.items():
-        grid.field_data[_plain(name)] = np.array([label])
-    for name in made.sides:
-        grid.field_data[_plain(name)] = made.facets(name)
     grid.set_active_scalars("region", preference="cell")
+    return grid
+
+
+def grid_of(
+    points: Floats, cells: Ints, kind: str, regions: Ints, names: Mapping[int, str], facets: Mapping[str, Ints]
+) -> pyvista.UnstructuredGrid:
+    """Make a `pyvista.UnstructuredGrid` of cells, with their regions, the names of these, and the nodes of named facets."""
+    import pyvista
+
+    grid = pyvista.UnstructuredGrid({TYPES[kind]: cells}, points)
+    grid.cell_data["region"] = regions.astype(np.int32)
+    for label, name in names.items():
+        grid.field_data[_plain(name)] = np.array([label])
+    for name, nodes in facets.items():
+        grid.field_data[_plain(name)] = nodes
     return grid
 
 

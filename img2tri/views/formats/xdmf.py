@@ -10,10 +10,10 @@ Both files have the same points, in two coordinates where the mesh is flat, so t
     with XDMFFile(MPI.COMM_WORLD, "femur_facets.xdmf", "r", encoding=text) as file:
         facets = file.read_meshtags(mesh, name="Grid")
 
-All numbers are in the XML itself, hence the encoding; so there is no HDF5 file that could get lost. The values are the labels of regions, or,
-as measures in FEniCSx must not be negative, the next free number for labels below 1; and the tags of sets. XDMF has no place for names
-of values; they are in an Information, where the reader of meshio finds them. The ends of solids are triangles while their walls are not,
-so they have a file of their own.
+All numbers are in the XML itself, hence the encoding; so there is no HDF5 file that could get lost. The values are the labels of regions,
+or, as measures in FEniCSx must not be negative, the next free number for labels below 1; and the tags of sets. XDMF has no place for
+names of values; they are in an Information, where the reader of meshio finds them. The ends of solids are triangles while their walls
+are not, so they have a file of their own.
 """
 
 from __future__ import annotations

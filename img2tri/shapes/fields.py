@@ -1,0 +1,118 @@
+"""What a user says of edge lengths -> a field of lengths over the image, whose growth is limited.
+
+One length for all needs no field. A length for each region, an array on the image grid, or a function of places becomes a grid over
+the image, in which no length grows faster than the gradation per unit of distance: from each step of a geometric scale of
+lengths, a distance transform says how far it reaches.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from img2tri.errors import ParameterError
+from img2tri.records import Floats, Frame
+
+CELLS = 2**20  # of the grid at most
+SCALE = 1.1  # between the lengths whose reach is looked at
+
+EdgeLength = float | str | Mapping[int, float | str] | Callable[[Floats], Floats] | NDArray[Any]
+
+
+@dataclass(frozen=True, eq=False)
+class Field:
+    """Edge lengths over the image, in px.
+
+    Attributes
+    ----------
+    grid
+        (ny, nx) float64, at the centres of cells.
+    cell
+        Side of a cell, in px; cell (0, 0) lies at the origin of the plane.
+    """
+
+    grid: Floats
+    cell: float
+
+    def __call__(self, points: Floats) -> Floats:
+        """Return the lengths (k,) wanted at points (k, 2) of the plane."""
+        from scipy.ndimage import map_coordinates
+
+        at = points.T[::-1] / self.cell - 0.5
+        result: Floats = map_coordinates(self.grid, at, order=1, mode="nearest")
+        return result
+
+
+def length_field(
+    wanted: EdgeLength, frame: Frame, labels: NDArray[Any], *, gradation: float, name: str = "edge_length"
+) -> tuple[float, Field | None]:
+    """Return the greatest length in px, and the field of lengths, or None where it is the same everywhere.
+
+    Parameters
+    ----------
+    wanted
+        A length; lengths by label, the others taking the greatest of them; an array (h, w) of lengths in world units, one for each
+        pixel; or a function of world places (k, 2) that returns lengths (k,) in world units.
+    frame, labels
+        Where the image lies, and its label map (h, w).
+    gradation
+        Greatest growth of lengths per unit of distance.
+
+    Examples
+    --------
+    >>> labels = np.repeat([[1, 2]], 20, axis=0).repeat(20, axis=1)
+    >>> longest, field = length_field({1: 2, 2: 8}, Frame((20, 40)), labels, gradation=0.2)
+    >>> longest, field(np.array([[1.0, 10.0], [30.0, 10.0]])).round(1)
+    (8.0, array([2., 4.]))
+    """
+    if isinstance(wanted, (str, float, int, np.number)):
+        return frame.length(name, wanted) / frame.pixel, None
+    if not (isinstance(wanted, (Mapping, np.ndarray)) or callable(wanted)):
+        raise ParameterError(f"{name}: expected a length, lengths by label, an array or a function, found {type(wanted).__name__}")
+    width, height = frame.plane(0 if frame.upward else frame.shape[0], frame.shape[1])
+    cell = max(1.0, float(np.sqrt(width * height / CELLS)))
+    ny, nx = max(1, round(height / cell)), max(1, round(width / cell))
+    y, x = (np.mgrid[:ny, :nx] + 0.5) * cell
+    places = frame.world(np.stack([x.ravel(), y.ravel()], axis=1))
+    if callable(wanted):
+        lengths = np.asarray(wanted(places), np.float64)
+        if lengths.shape != (len(places),):
+            raise ParameterError(f"{name}: expected the function to return ({len(places)},) lengths, found shape {lengths.shape}")
+    else:
+        rows, columns = (np.clip(v.astype(np.int64), 0, n - 1) for v, n in zip(frame.row_column(places), frame.shape, strict=True))
+        lengths = _by_label(name, wanted, frame, labels) if isinstance(wanted, Mapping) else np.asarray(wanted, np.float64)
+        if lengths.shape != frame.shape:
+            raise ParameterError(f"{name}: expected an array of the shape of the image {frame.shape}, found {lengths.shape}")
+        lengths = lengths[rows, columns]
+    if not (np.isfinite(lengths).all() and (lengths > 0).all()):
+        raise ParameterError(f"{name}: expected lengths above 0 everywhere, found {lengths.min():g} to {lengths.max():g}")
+    grid = _limited(lengths.reshape(ny, nx) / frame.pixel, gradation * cell)
+    return float(grid.max()), Field(grid, cell)
+
+
+def _by_label(name: str, wanted: Mapping[int, float | str], frame: Frame, labels: NDArray[Any]) -> Floats:
+    """Length at each pixel, by its label; other labels take the greatest."""
+    lengths = {label: frame.length(f"{name}[{label}]", value) for label, value in wanted.items()}
+    if not lengths:
+        raise ParameterError(f"{name}: expected lengths by label, found none")
+    result = np.full(labels.shape, max(lengths.values()))
+    for label, length in lengths.items():
+        result[labels == label] = length
+    return result
+
+
+def _limited(grid: Floats, growth: float) -> Floats:
+    """Limit the growth from cell to cell."""
+    import cv2
+
+    low, high = float(grid.min()), float(grid.max())
+    result = grid
+    for level in low * SCALE ** np.arange(np.ceil(np.log(high / low) / np.log(SCALE)) if high > low else 0):
+        far = (grid > level * SCALE**0.5).astype(np.uint8)
+        distance = cv2.distanceTransform(far, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+        result = np.minimum(result, level * SCALE**0.5 + growth * np.asarray(distance, np.float64)) if far.any() else result
+    return np.minimum(result, grid)
