@@ -117,13 +117,16 @@ def _made(job: _Job, arguments: Namespace, progress: Callable[[str, float], None
 
 def _jobs(arguments: Namespace) -> list[_Job]:
     """Name the files of every image; see that each can be written, and that none is there twice or an image itself."""
-    from img2tri.views.figure import SUFFIXES
     from img2tri.views.files import FORMATS
     from img2tri.views.storing import writable
 
     wanted: list[tuple[str, str, Collection[str]]] = [("-o", name, FORMATS) for name in arguments.outputs]
-    wanted += [("--plot", arguments.plot, SUFFIXES)] if arguments.plot else []
-    wanted += [("--report", arguments.report, (".json",))] if arguments.report else []
+    if arguments.plot:
+        from img2tri.views.figure import SUFFIXES
+
+        wanted.append(("--plot", arguments.plot, SUFFIXES))
+    if arguments.report:
+        wanted.append(("--report", arguments.report, (".json",)))
     owners = {os.path.realpath(image): image for image in arguments.images}
     jobs = []
     for image in arguments.images:
@@ -181,10 +184,10 @@ def _tell_mesh(job: _Job, mesh: TriangleMesh, quiet: bool) -> None:
     if not quiet:
         _tell(job.image, mesh)
         settings = mesh.origin.settings if mesh.origin else {}
-        chosen = [f"edge length {settings['edge_length']:g}"]
-        if settings["threshold"] is not None:
-            chosen.append(f"threshold {settings['threshold']:g} ({settings['threshold_from']})")
-        print(f"{'chosen':<12}{', '.join(chosen)}")
+        length, threshold = settings["edge_length"], settings["threshold"]
+        chosen = f"edge length {length if isinstance(length, str) else f'{length:g}'}"
+        chosen += "" if threshold is None else f", threshold {threshold:g} ({settings['threshold_from']})"
+        print(f"{'chosen':<12}{chosen}")
         files = [*job.meshes, *filter(None, (job.plot, job.report))]
         if files:
             print(f"{'saved':<12}{', '.join(files)}")

@@ -7,24 +7,29 @@ end of this road all outlines run through the middles between pixels, where they
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from img2tri.errors import finite
 from img2tri.raster.zones import Zones
 from img2tri.records import Floats, Frame, Made, Outlines
 from img2tri.shapes.areas import area_error, keep_areas
 from img2tri.shapes.coarsening import refine, settle
 from img2tri.shapes.cracks import find_cracks
 from img2tri.shapes.drafts import Draft, draft
-from img2tri.shapes.fields import Field
-from img2tri.shapes.links import Links
+from img2tri.shapes.fields import EdgeLength, Field, length_field
+from img2tri.shapes.links import Links, pixel_areas
 from img2tri.shapes.placing import place, place_on_sides
 from img2tri.shapes.sizing import by_curvature, by_pieces, by_thickness, limit_growth
 from img2tri.shapes.unrolling import Points
 
 AREA_ROUNDS, AREA_ERROR = 4, 1e-4  # how often breaks are moved for the sake of areas, and the relative error that is left
+USUAL_TRIANGLES = 2000  # what the default edge length aims at
 RESPACINGS = 2  # how often outlines are spaced anew around places that need shorter pieces
 ATTEMPTS = 12  # rounds of refining the outlines; two are the most that ordinary images take
 
@@ -82,6 +87,38 @@ class Sizes:
     segments_per_turn: float | None = None
     shortest: float = 0.0
     gradation: float = 0.3
+
+
+def wanted_sizes(
+    edge_length: EdgeLength | None,
+    labels: NDArray[Any],
+    links: Links,
+    frame: Frame,
+    *,
+    gradation: float,
+    boundary: float | str | None = None,
+    shortest: float | str | None = None,
+    elements_across: float | None = None,
+    segments_per_turn: float | None = None,
+) -> Sizes:
+    """Turn what a user says of edge lengths into px.
+
+    Equilateral triangles of the default length fill the regions about `USUAL_TRIANGLES` times.
+    """
+    finite("gradation", gradation, above=0)
+    if edge_length is None:
+        longest, field = max(4.0, math.sqrt(pixel_areas(links)[1:].sum() / USUAL_TRIANGLES * 4 / math.sqrt(3))), None
+    else:
+        longest, field = length_field(edge_length, frame, labels, gradation=gradation)
+    return Sizes(
+        longest,
+        field,
+        None if boundary is None else frame.length("boundary_edge_length", boundary) / frame.pixel,
+        None if elements_across is None else finite("elements_across", elements_across, above=0),
+        None if segments_per_turn is None else finite("segments_per_turn", segments_per_turn, least=3),
+        0.0 if shortest is None else frame.length("min_edge_length", shortest) / frame.pixel,
+        gradation,
+    )
 
 
 def conform(

@@ -14,9 +14,10 @@ from img2tri import __version__
 
 # Options that go on to mesh_image, by its own names. Those not given are not in the namespace.
 MESH_OPTIONS = (
-    "recipe", "threshold", "labels", "background", "invert", "connectivity", "outline", "corners", "edge_length", "min_angle",
-    "tolerance", "keep_area", "smoothing", "iterations", "spacing", "origin", "page", "crop", "min_area", "largest", "max_pixels",
-    "names", "seed", "step", "n_boundary_points", "n_interior_points", "min_distance", "min_distance_to_boundary",
+    "recipe", "threshold", "labels", "background", "invert", "connectivity", "outline", "corners", "edge_length", "gradation",
+    "min_edge_length", "boundary_edge_length", "elements_across", "segments_per_turn", "min_angle", "tolerance", "keep_area", "smoothing",
+    "iterations", "spacing", "origin", "page", "crop", "min_area", "largest", "max_pixels", "names", "seed",
+    "step", "n_boundary_points", "n_interior_points", "min_distance", "min_distance_to_boundary",
 )  # fmt: skip
 
 EXAMPLES = """examples:
@@ -148,7 +149,13 @@ def _add_mesh_options(parser: ArgumentParser) -> None:
     add("--recipe", metavar="R", help="conforming, or the paper's: structured, unstructured (default conforming)")
     add("--outline", metavar="O", help="smooth: where the edge is likely to be; pixel: along the sides of pixels (default smooth)")
     add("--corners", metavar="C", help="auto: sharp as far as --min-angle allows; keep: always; round: smoothed (default auto)")
-    add("--edge-length", metavar="L", help="wanted length of edges (default: some 2000 triangles, at least 4px)")
+    add("--edge-length", type=_lengths, metavar="L", help="wanted length of edges, or one for each region, as in 1=4,2=8px (default: "
+        "some 2000 triangles, at least 4px)")  # fmt: skip
+    add("--boundary-edge-length", metavar="L", help="length along outlines; fine there, coarse inside")
+    add("--min-edge-length", metavar="L", help="outlines get no shorter edges for the sake of the next two options")
+    add("--elements-across", type=_number, metavar="N", help="at least so many edges across the thinnest places")
+    add("--segments-per-turn", type=_number, metavar="N", help="at least so many edges to a full turn of an outline")
+    add("--gradation", type=_number, metavar="G", help="how much lengths may grow per unit of distance (default 0.3)")
     add("--min-angle", type=_number, metavar="A", help="least angle of a triangle, 0 to 33 degrees (default 30)")
     add("--tolerance", metavar="L", help="greatest distance between outlines and mesh (default 0.5px)")
     add("--keep-area", action=BooleanOptionalAction, help="move vertices outwards on curved outlines, so that areas are kept, or leave "
@@ -194,6 +201,10 @@ def _pair(text: str) -> float | str | tuple[float, ...]:
     return _numbers(text) if "," in text else _number_or_word(text)
 
 
+def _lengths(text: str) -> str | dict[int, str]:
+    return dict(map(_name, text.split(","))) if "=" in text else text
+
+
 def _labels(text: str) -> bool | list[int]:
     return True if text == "all" else list(map(_whole, text.split(",")))
 
@@ -205,5 +216,5 @@ def _background(text: str) -> int | None:
 def _name(text: str) -> tuple[int, str]:
     number, _, name = text.partition("=")
     if not name:
-        raise ArgumentTypeError(f"expected a region and its name, as in 1=bone, found {text!r}")
+        raise ArgumentTypeError(f"expected the number of a region, =, and what it gets, as in 1=bone, found {text!r}")
     return _whole(number), name

@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, TypedDict, Unpack
 
-from img2tri.conforming import Sizes, conform, trace_outlines
+from img2tri.conforming import conform, trace_outlines, wanted_sizes
 from img2tri.errors import ImageError, ParameterError, choice, finite, integer
 from img2tri.mesh import TriangleMesh
 from img2tri.paper import paper_mesh
@@ -17,8 +17,8 @@ from img2tri.raster.binarizing import Level
 from img2tri.raster.cropping import crop as cropped
 from img2tri.raster.reading import read
 from img2tri.raster.zones import Zones, cleaned, find_zones
-from img2tri.records import Floats, Frame, Origin, Outlines
-from img2tri.shapes.fields import EdgeLength, Field, length_field
+from img2tri.records import Floats, Origin, Outlines
+from img2tri.shapes.fields import EdgeLength
 from img2tri.shapes.links import Links, pixel_areas, pixels_beside
 from img2tri.shapes.polygons import enclosed_areas
 
@@ -27,7 +27,6 @@ SMOOTHINGS = ("none", "uniform", "cotangent")
 PAPER_THRESHOLD = 240
 PAPER_STEP = "10px"
 PAPER_SMOOTHING = {"structured": "none", "unstructured": "uniform"}
-USUAL_TRIANGLES = 2000  # what the default edge length aims at
 
 
 class PaperOptions(TypedDict, total=False):
@@ -198,15 +197,10 @@ def mesh_image(
 
     tell("points", 0.3)
     within = frame.length("tolerance", tolerance) / frame.pixel
-    finite("gradation", gradation, above=0)
-    sizes = Sizes(
-        *_longest(edge_length, gradation, zones, links, frame),
-        _px("boundary_edge_length", boundary_edge_length, frame),
-        None if elements_across is None else finite("elements_across", elements_across, above=0),
-        None if segments_per_turn is None else finite("segments_per_turn", segments_per_turn, least=3),
-        _px("min_edge_length", min_edge_length, frame) or 0.0,
-        gradation,
-    )
+    sizes = wanted_sizes(
+        edge_length, zones.labels, links, frame, gradation=gradation, boundary=boundary_edge_length, shortest=min_edge_length,
+        elements_across=elements_across, segments_per_turn=segments_per_turn,
+    )  # fmt: skip
     if recipe == "conforming":
         # Smoothing with a free boundary gets half of what outlines and mesh may differ by.
         spent = within / 2 if smoothing == "cotangent" else within
@@ -289,21 +283,6 @@ def _advice(level: Level | None) -> str:
 def _expected_areas(zones: Zones, outlines: Outlines, links: Links) -> Floats:
     """Area each region should have: that of its pixels, or, where gray values place the outlines, that within them."""
     return pixel_areas(links) if zones.gray is None else enclosed_areas(outlines)
-
-
-def _longest(wanted: EdgeLength | None, gradation: float, zones: Zones, links: Links, frame: Frame) -> tuple[float, Field | None]:
-    """Return the greatest wanted length in px, and the field of lengths if there is one.
-
-    Equilateral triangles of the default length fill the regions about `USUAL_TRIANGLES` times.
-    """
-    if wanted is not None:
-        return length_field(wanted, frame, zones.labels, gradation=gradation)
-    return max(4.0, math.sqrt(pixel_areas(links)[1:].sum() / USUAL_TRIANGLES * 4 / math.sqrt(3))), None
-
-
-def _px(name: str, value: float | str | None, frame: Frame) -> float | None:
-    """Turn a length given by a user into px."""
-    return None if value is None else frame.length(name, value) / frame.pixel
 
 
 def _silent(stage: str, fraction: float) -> None:

@@ -9,6 +9,7 @@ from hypothesis.extra import numpy as hnp
 
 # The same examples in every run; and many new ones in each, when asked for by  pytest -m slow.
 QUICK = settings(max_examples=40, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
+FEW = settings(QUICK, max_examples=15)
 THOROUGH = settings(max_examples=2000, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much])
 
 SEEDS = st.integers(0, 2**32 - 1)

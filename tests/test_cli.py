@@ -33,6 +33,11 @@ ARRIVE = {
     "outline": (["--outline", "pixel"], "pixel"),
     "corners": (["--corners", "round"], "round"),
     "edge_length": (["--edge-length", "8px"], "8px"),
+    "gradation": (["--gradation", "0.5"], 0.5),
+    "min_edge_length": (["--min-edge-length", "2"], "2"),
+    "boundary_edge_length": (["--boundary-edge-length", "2px"], "2px"),
+    "elements_across": (["--elements-across", "2"], 2.0),
+    "segments_per_turn": (["--segments-per-turn", "16"], 16.0),
     "min_angle": (["--min-angle", "28.5"], 28.5),
     "tolerance": (["--tolerance", "0.25px"], "0.25px"),
     "keep_area": (["--no-keep-area"], False),
@@ -56,6 +61,7 @@ ARRIVE = {
 # Other ways to type a value.
 ALSO_ARRIVE = [
     (["--keep-area"], "keep_area", True),
+    (["--edge-length", "1=4,2=8px"], "edge_length", {1: "4", 2: "8px"}),
     (["--threshold", "240"], "threshold", 240.0),
     (["--threshold", "-0.5"], "threshold", -0.5),
     (["--labels"], "labels", True),
@@ -198,6 +204,15 @@ def test_one_image_to_every_format_a_figure_and_a_report(disc, tmp_path, capsys)
     assert "edge length 6" in out
     assert all(name in out for name in names)
     assert str(mesh.quality()).partition("\n")[2] in out
+
+
+def test_lengths_by_region(tmp_path, capsys):
+    grains = specimens.polycrystal(40, 3)
+    image = _saved(grains, tmp_path / "grains.png")
+    assert main(["mesh", image, "--labels", "--edge-length", "1=2,2=8px,3=10%", "-o", str(tmp_path / "a.ply")]) == 0
+    assert "edge length field" in capsys.readouterr().out
+    _, triangles, _ = load(tmp_path / "a.ply")
+    assert len(triangles) == len(mesh_image(grains, labels=True, edge_length={1: 2, 2: "8px", 3: "10%"}).triangles)
 
 
 def test_height_gives_a_closed_solid(disc, tmp_path):
@@ -360,7 +375,8 @@ BAD_OPTIONS = {
     "labels": (["mesh", "DISC", "--labels=1,x"], "--labels: expected a whole number, found 'x'"),
     "background": (["mesh", "DISC", "--background", "white"], "--background: expected a whole number, found 'white'"),
     "spacing": (["mesh", "DISC", "--spacing", "1,x"], "--spacing: expected a number, found 'x'"),
-    "name": (["mesh", "DISC", "--name", "bone"], "--name: expected a region and its name, as in 1=bone, found 'bone'"),
+    "edge lengths": (["mesh", "DISC", "--edge-length", "1=4,5"], "--edge-length: expected the number of a region"),
+    "name": (["mesh", "DISC", "--name", "bone"], "--name: expected the number of a region, =, and what it gets"),
     "colour": (["mesh", "DISC", "--colour-by", "taste"], "--colour-by"),
 }
 BAD_INPUT = {

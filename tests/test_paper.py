@@ -215,7 +215,7 @@ def test_nothing_but_background():
     [
         ({"edge_length": 0}, "edge_length: expected a number above 0"),
         ({"n_boundary_points": 2}, "n_boundary_points: expected a whole number of at least 3"),
-        ({"n_interior_points": -1}, "n_points: expected a whole number"),
+        ({"n_interior_points": -1}, "n_interior_points: expected a whole number"),
         ({"min_distance": -1}, "min_distance: expected a number of at least 0"),
         ({"min_distance_to_boundary": np.nan}, "min_distance_to_boundary: expected a number of at least 0"),
         ({"seed": 0.5}, "seed: expected a whole number"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import inspect
 import os
 import subprocess
 import sys
@@ -17,7 +18,7 @@ from PIL import Image
 import img2tri
 from img2tri import FileError, ImageError, Img2triError, ParameterError, mesh_image
 from img2tri.paper import structured_mesh
-from img2tri.pipeline import PAPER_THRESHOLD, RECIPES, SMOOTHINGS
+from img2tri.pipeline import PAPER_THRESHOLD, RECIPES, SMOOTHINGS, PaperOptions
 
 DATA = Path(__file__).parents[1] / "data"
 DISC = specimens.disc(40, 15).astype(bool)
@@ -136,6 +137,11 @@ CHANGES = {
     "outline": (UNEVEN, {}, {"outline": "pixel"}),
     "corners": (COMB, {}, {"corners": "round"}),
     "keep_area": (UNEVEN, {"edge_length": 8}, {"edge_length": 8, "keep_area": False}),
+    "gradation": (SHAPES, {"boundary_edge_length": 2, "edge_length": 12}, {"boundary_edge_length": 2, "edge_length": 12, "gradation": 1}),
+    "boundary_edge_length": (UNEVEN, {"edge_length": 8}, {"edge_length": 8, "boundary_edge_length": 3}),
+    "min_edge_length": (UNEVEN, {"segments_per_turn": 60}, {"segments_per_turn": 60, "min_edge_length": 3}),
+    "elements_across": (COMB, {}, {"elements_across": 3}),
+    "segments_per_turn": (UNEVEN, {}, {"segments_per_turn": 60}),
     "min_angle": (COMB, {"min_angle": 0, "edge_length": 9}, {"min_angle": 33, "edge_length": 9}),
     "tolerance": (UNEVEN, {"tolerance": "0.1px", "edge_length": 12}, {"tolerance": "1px", "edge_length": 12}),
     "smoothing": (UNEVEN, {"smoothing": "none"}, {"smoothing": "uniform"}, {"smoothing": "cotangent"}),
@@ -152,6 +158,12 @@ CHANGES = {
     "min_distance": (UNEVEN * 255, {"recipe": "unstructured"}, {"recipe": "unstructured", "min_distance": 8}),
     "min_distance_to_boundary": (UNEVEN * 255, {"recipe": "unstructured"}, {"recipe": "unstructured", "min_distance_to_boundary": 8}),
 }
+
+
+def test_every_option_is_shown_to_change_something():
+    elsewhere = {"page", "max_pixels", "names", "progress"}
+    signature = inspect.signature(mesh_image).parameters
+    assert set(CHANGES) | elsewhere == set(signature) - {"image", "paper"} | set(PaperOptions.__annotations__)
 
 
 @pytest.mark.parametrize("name", CHANGES)
@@ -242,6 +254,15 @@ def test_edge_length_in_pixels_in_percent_and_in_world_units():
     assert same(wanted, mesh_image(image, spacing=0.5, edge_length="4px"))
     assert same(wanted, mesh_image(image, spacing=0.5, edge_length="8%"))
     assert wanted.report.settings["edge_length"] == 2
+
+
+def test_edge_length_may_differ_from_region_to_region():
+    halves = np.repeat([[1, 2]], 40, axis=0).repeat(40, axis=1)
+    mesh = mesh_image(halves, labels=True, edge_length={1: 2, 2: "8px"})
+    q = mesh.quality().arrays["longest_edge"]
+    fine, coarse = (q[mesh.regions == region].mean() for region in (1, 2))
+    assert 2 * fine < coarse
+    assert mesh.report.kept
 
 
 def test_edge_length_left_out_follows_the_area_and_is_told():

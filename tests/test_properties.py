@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 import oracles
 import pytest
+import specimens
 import strategies
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from strategies import QUICK, THOROUGH
+from strategies import FEW, QUICK, THOROUGH
 
 from img2tri import mesh_image
 
@@ -136,7 +137,7 @@ def test_many_gray_images(case, options):
     gray_promises(case, options)
 
 
-@QUICK
+@FEW
 @given(strategies.maps_and_backgrounds(10), st.sampled_from([0.5, 4.0, 0.7, 1e-4, 3e5]), strategies.edge_lengths())
 def test_spacing_scales_any_mesh_exactly(case, spacing, edge_length):
     labels, background = case
@@ -147,7 +148,7 @@ def test_spacing_scales_any_mesh_exactly(case, spacing, edge_length):
     assert np.array_equal(scaled.regions, one.regions)
 
 
-@QUICK
+@FEW
 @given(strategies.maps_and_backgrounds(10), st.floats(0.2, 5), st.sampled_from(["lower", "upper"]))
 def test_pixels_of_any_shape(case, ratio, origin):
     labels, background = case
@@ -159,7 +160,7 @@ def test_pixels_of_any_shape(case, ratio, origin):
     assert oracles.mesh_neighbours(mesh.triangles, mesh.regions) == oracles.pixel_neighbours(labels, background)
 
 
-@QUICK
+@FEW
 @given(strategies.maps_and_backgrounds(10), st.sampled_from(["uniform", "fixed", "free"]), st.integers(0, 20))
 def test_smoothing_never_spoils(case, how, iterations):
     labels, background = case
@@ -173,7 +174,7 @@ def test_smoothing_never_spoils(case, how, iterations):
     assert moved.max() <= (0.5 + 1e-9 if how == "free" else 0)
 
 
-@QUICK
+@FEW
 @given(strategies.maps_and_backgrounds(10), st.sampled_from(["uniform", "cotangent"]), st.integers(0, 20))
 def test_smoothing_in_one_call_keeps_the_angles(case, smoothing, iterations):
     labels, background = case
@@ -183,10 +184,44 @@ def test_smoothing_in_one_call_keeps_the_angles(case, smoothing, iterations):
     assert oracles.mesh_neighbours(mesh.triangles, mesh.regions) == oracles.pixel_neighbours(labels, background)
 
 
-@QUICK
+@FEW
 @given(strategies.maps_and_backgrounds(8))
 def test_the_same_mesh_again(case):
     labels, background = case
     one, other = (mesh_image(labels.copy(), labels=True, background=background) for _ in range(2))
     assert one.vertices.tobytes() == other.vertices.tobytes()
     assert one.triangles.tobytes() == other.triangles.tobytes()
+
+
+NOISE = specimens.drawn(
+    "...111.1.111",
+    "......1..1.1",
+    "..........11",
+    "...........1",
+    "........1.11",
+    ".11.....1111",
+    ".111.1111...",
+    "..1111.....1",
+    "...11111....",
+)
+GRAY = np.array([[1, -25, 38, 55, 70], [19, 67, -8, -21, 16], [-18, 18, 49, -23, -26], [22, 44, 39, -24, 49], [-14, 43, 52, 56, 63]]) / 10
+
+
+@pytest.mark.xfail(strict=True, reason="vertices moved outwards for the sake of areas may go too far beside points that went back")
+@pytest.mark.parametrize(
+    ("image", "options"),
+    [
+        (NOISE, {"labels": True, "background": None}),
+        (GRAY, {"threshold": -1.944, "edge_length": 1, "tolerance": 0.25, "min_angle": 0}),
+    ],
+    ids=["labels", "gray"],
+)
+def test_areas_are_not_kept_at_the_expense_of_the_tolerance(image, options):
+    assert mesh_image(image, **options, keep_area=False).report.kept
+    assert mesh_image(image, **options).report.kept
+
+
+@pytest.mark.xfail(strict=True, reason="where pixels are flat, a junction can be sharper than the least angle")
+def test_flat_pixels_have_the_angles_of_others():
+    labels = specimens.drawn(".11", "1..", "...")
+    assert mesh_image(labels, labels=True, background=None, spacing=(1, 0.25)).report.kept

@@ -17,11 +17,10 @@ from typing import Any
 import numpy as np
 from PIL import Image, UnidentifiedImageError
 
-from img2tri.errors import FileError, ImageError, Img2triError, ParameterError
+from img2tri.errors import FileError, ImageError, Img2triError
 from img2tri.raster.checking import Pixels
+from img2tri.raster.pages import Decoded, check_page
 from img2tri.raster.tags import Size, exif, millimetres, orientation, pixel_size, upright
-
-Decoded = tuple[Pixels, dict[str, Any], Size | None]
 
 BITS, SAMPLE_FORMAT = 258, 339  # tags of TIFF
 ASSOCIATED = 1  # TIFF's word for colours multiplied by their alpha
@@ -123,18 +122,6 @@ def _opened(path: Path) -> Iterator[Image.Image]:
                 Image.MAX_IMAGE_PIXELS = limit
         with img:
             yield img
-
-
-def check_page(path: Path, page: int, pages: int, width: int, height: int, max_pixels: int) -> dict[str, Any]:
-    """Check page and size before anything is decoded, and note the page."""
-    if page >= pages:
-        raise ParameterError(f"page: expected 0 to {pages - 1} in {str(path)!r}, found {page}")
-    if width * height > max_pixels:
-        raise ImageError(
-            f"image: expected at most max_pixels={max_pixels} pixels, found {width} x {height} in {str(path)!r}; "
-            "raise max_pixels if the file can be trusted"
-        )
-    return {"pages": pages, "page": page} if pages > 1 else {}
 
 
 def _decode(path: Path, start: bytes, page: int, max_pixels: int) -> Decoded:

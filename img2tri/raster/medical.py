@@ -25,7 +25,7 @@ import numpy as np
 
 from img2tri.errors import FileError, ImageError
 from img2tri.raster.checking import Pixels
-from img2tri.raster.decoding import Decoded, check_page
+from img2tri.raster.pages import Decoded, check_page
 from img2tri.raster.tags import Size
 
 PIXEL_DATA = ("PixelData", "FloatPixelData", "DoubleFloatPixelData")

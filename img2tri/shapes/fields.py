@@ -66,8 +66,8 @@ def length_field(
     --------
     >>> labels = np.repeat([[1, 2]], 20, axis=0).repeat(20, axis=1)
     >>> longest, field = length_field({1: 2, 2: 8}, Frame((20, 40)), labels, gradation=0.2)
-    >>> longest, field(np.array([[1.0, 10.0], [30.0, 10.0]])).round(1)
-    (8.0, array([2., 4.]))
+    >>> round(longest), field(np.array([[1.0, 10.0], [30.0, 10.0]])).round()
+    (6, array([2., 4.]))
     """
     if isinstance(wanted, (str, float, int, np.number)):
         return frame.length(name, wanted) / frame.pixel, None

@@ -72,7 +72,8 @@ def _thickness(z: Points, at: Ints, inwards: Points, greatest: float) -> Floats:
     radius, facing, going = np.full(len(at), greatest / 2), np.zeros(len(at), bool), np.arange(len(at))
     for _ in range(4):
         centre = z[at[going]] + radius[going] * inwards[going]
-        distance, nearest = tree.query(np.stack([centre.real, centre.imag], axis=1), distance_upper_bound=greatest)
+        found = tree.query(np.stack([centre.real, centre.imag], axis=1), distance_upper_bound=greatest)
+        distance, nearest = np.asarray(found[0]), np.asarray(found[1])
         hit = distance < 0.98 * radius[going]
         going, nearest = going[hit], nearest[hit]
         if not len(going):

@@ -7,7 +7,7 @@ What each format holds::
     .ply     float64       face property `region`         face properties, comments
     .obj     float64       groups `region_3`              -, comments
     .off     float64       -                              -
-    .3mf     float64       one colour each                -, metadata
+    .3mf     float64       objects with name and colour   -, metadata
     .glb     float32       meshes `region_3` in colours   -, extras
     .vtp     float64       cell array `region`            cell arrays, field data
     .vtu     float64       cell array `region`            cell arrays, comments
@@ -18,7 +18,7 @@ The formats of solvers, which hold names and sets of edges besides, are in `img2
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -27,23 +27,37 @@ from numpy.typing import ArrayLike, NDArray
 
 from img2tri.errors import FileError, MeshError
 from img2tri.records import Floats, Ints
+from img2tri.views import threemf
+from img2tri.views.bodies import Body, bodies
 from img2tri.views.formats.reading import READERS, by_text
 from img2tri.views.pyvista_objects import vtp, vtu
 from img2tri.views.readers import by_trimesh
 from img2tri.views.storing import known_suffix, store, writable
 from img2tri.views.surface import Surface, places, plane_mesh, surface
-from img2tri.views.threemf import threemf
 from img2tri.views.trimesh_objects import glb
 from img2tri.views.vtkxml import by_xml
 from img2tri.views.writers import obj, off, ply, stl
 
 
 class Format(NamedTuple):
-    """Who writes a format, who reads it back if a plane mesh is to be expected in it, and whether its coordinates are float32."""
+    """Who writes a format, who reads it back, and what else there is to know about it.
+
+    Attributes
+    ----------
+    write
+        A surface -> the bytes of a file.
+    read
+        The other way round; None where no plane mesh is to be expected.
+    single
+        Whether its coordinates are float32.
+    bodies
+        Who writes solids instead, where each region is to be closed by itself.
+    """
 
     write: Callable[[Surface], bytes]
     read: Callable[[bytes, str], tuple[NDArray[Any], NDArray[Any], NDArray[Any] | None]] | None
     single: bool = False
+    bodies: Callable[[Sequence[Body]], bytes] | None = None
 
 
 FORMATS = {
@@ -51,7 +65,7 @@ FORMATS = {
     ".ply": Format(ply, by_trimesh),
     ".obj": Format(obj, by_trimesh),
     ".off": Format(off, by_trimesh),
-    ".3mf": Format(threemf, None),
+    ".3mf": Format(threemf.flat, None, bodies=threemf.solids),
     ".glb": Format(glb, by_trimesh, single=True),
     ".vtp": Format(vtp, by_xml),
     ".vtu": Format(vtu, by_xml),
@@ -66,6 +80,7 @@ def save(
     *,
     z: float = 0.0,
     height: float | None = None,
+    names: Mapping[int, str] | None = None,
     cell_data: Mapping[str, ArrayLike] | None = None,
     field_data: Mapping[str, str] | None = None,
 ) -> None:
@@ -77,6 +92,8 @@ def save(
     ----------
     path
         Where to write: .stl, .ply, .obj, .off, .3mf, .glb, .vtp or .vtu. See the table above for what each can hold.
+    names
+        Label -> name of the region, for formats that hold names.
     vertices, triangles, regions, z, height, cell_data, field_data
         As in `img2tri.views.surface.surface`.
 
@@ -97,6 +114,10 @@ def save(
     """
     target = writable(path, FORMATS)
     form = FORMATS[known_suffix(path, FORMATS)]
+    if form.bodies and height is not None:
+        parts = bodies(vertices, triangles, regions, height=height, z=z, names=names, cell_data=cell_data, field_data=field_data)
+        store(target, form.bodies(parts))
+        return
     made = surface(vertices, triangles, regions, z=z, height=height, cell_data=cell_data, field_data=field_data)
     if form.single:
         _check_rounding(path, made)

@@ -82,11 +82,17 @@ function triangleAt(x, y) {
 const canvas = $("canvas"), screen = canvas.getContext("2d");
 const layer = () => document.createElement("canvas").getContext("2d");
 let done = { fill: layer(), lines: layer(), at: null }, work = { fill: layer(), lines: layer(), at: null };
-let job = 0, waiting = 0, framed = false, picture = null;
+let job = 0, waiting = 0, due = null, picture = null;
 let ink = {};
 const dpr = () => Math.min(window.devicePixelRatio || 1, 2);
 
-function view_of(w, h) { return { x: state.x, y: state.y, s: state.zoom * dpr(), w, h }; }
+/** Do something before the screen shows the next picture, once, however often it is asked for; to render is to frame too. */
+function soon(action) {
+  if (!due) requestAnimationFrame(() => { const now = due; due = null; now(); });
+  if (!due || action === render) due = action;
+}
+
+function viewOf(w, h) { return { x: state.x, y: state.y, s: state.zoom * dpr(), w, h }; }
 
 /** Colour of each triangle as a number, and the colours. */
 function colouring() {
@@ -97,7 +103,7 @@ function colouring() {
 
 /** Draw everything into the layers `work`; then they become those shown. */
 function render() {
-  const mine = ++job, w = canvas.width, h = canvas.height, at = view_of(w, h);
+  const mine = ++job, w = canvas.width, h = canvas.height, at = viewOf(w, h);
   for (const context of [work.fill, work.lines]) {
     context.canvas.width = w; context.canvas.height = h;
     context.lineJoin = context.lineCap = "round";
@@ -211,8 +217,7 @@ function outline(context, px, py) {
 
 /** Put the layers together as they are seen from here. */
 function frame() {
-  framed = false;
-  const w = canvas.width, h = canvas.height, d = dpr(), at = view_of(w, h);
+  const w = canvas.width, h = canvas.height, d = dpr(), at = viewOf(w, h);
   screen.setTransform(1, 0, 0, 1, 0, 0);
   screen.clearRect(0, 0, w, h);
   const x0 = (0 - at.x) * at.s + w / 2, y0 = (0 - at.y) * at.s + h / 2;
@@ -271,9 +276,9 @@ function changed() {
   const w = canvas.width, h = canvas.height, s = state.zoom * dpr();
   const seen = stretches(state.x - w / 2 / s, state.y - h / 2 / s, state.x + w / 2 / s, state.y + h / 2 / s).reduce((sum, [from, to]) => sum + to - from, 0);
   clearTimeout(waiting);
-  if (seen <= LIGHT) { if (!framed) { framed = true; requestAnimationFrame(render); } return; }
+  if (seen <= LIGHT) { soon(render); return; }
   job++;
-  if (!framed) { framed = true; requestAnimationFrame(frame); }
+  soon(frame);
   waiting = setTimeout(render, done.at ? 120 : 0);
 }
 
@@ -308,7 +313,7 @@ function inside(event) {
 
 function read(x, y) {
   const t = triangleAt(x, y), [wx, wy] = world(x, y), digits = Math.max(0, Math.ceil(-Math.log10(view.pixel / state.zoom)));
-  if (t !== state.hover) { state.hover = t; if (!framed) { framed = true; requestAnimationFrame(frame); } }
+  if (t !== state.hover) { state.hover = t; soon(frame); }
   let text = `${wx.toFixed(digits)}, ${wy.toFixed(digits)}`;
   if (t >= 0) {
     const p = [0, 1, 2].map(i => [xy[2 * corners[3 * t + i]], xy[2 * corners[3 * t + i] + 1]]);
@@ -339,7 +344,7 @@ canvas.addEventListener("pointermove", event => {
   changed();
 });
 for (const name of ["pointerup", "pointercancel"]) canvas.addEventListener(name, event => { pointers.delete(event.pointerId); canvas.classList.remove("moving"); });
-canvas.addEventListener("pointerleave", () => { state.hover = -1; changed(); });
+canvas.addEventListener("pointerleave", () => { state.hover = -1; soon(frame); });
 canvas.addEventListener("wheel", event => {
   event.preventDefault();
   const [sx, sy] = inside(event);
@@ -423,6 +428,6 @@ new ResizeObserver(() => {
 addEventListener("hashchange", addressed);
 if (view.image) {
   picture = new Image();
-  picture.addEventListener("load", () => { if (!framed) { framed = true; requestAnimationFrame(frame); } });
+  picture.addEventListener("load", () => soon(frame));
   picture.src = "data:image/png;base64," + $("picture").textContent;
 }

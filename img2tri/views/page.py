@@ -58,7 +58,7 @@ def page(
     frame
         Where the image lies.
     report
-        The certificate as JSON, see `img2tri.report.Report.to_json`. It is kept in the page word for word.
+        The certificate as JSON, see `img2tri.report.Report.to_json`, or "{}" where there is none. It is kept in the page word for word.
     regions
         (m,) int64; None is region 1 everywhere.
     image

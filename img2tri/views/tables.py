@@ -80,7 +80,9 @@ def places(facts: dict[str, Any]) -> list[Place]:
 
 def verdict(facts: dict[str, Any]) -> str:
     """Say in a few words whether all is well."""
-    warnings = len(facts.get("warnings", []))
+    if "warnings" not in facts:
+        return ""
+    warnings = len(facts["warnings"])
     if not warnings:
         promised = facts.get("tolerance") is not None
         return f'<span class="chip good">✓ {"every promise kept" if promised else "nothing found wrong"}</span>'
@@ -97,9 +99,9 @@ def tiles(facts: dict[str, Any], vertices: int, triangles: int, count: int, q: F
         (f"{q.mean():.3f}", "mean quality q"),
     ]
     if "hausdorff" in facts:
-        numbers.append((_number(facts["hausdorff"]), "from the outlines at most"))
-    if "edge_length" in facts.get("settings", {}):
-        numbers.append((_number(facts["settings"]["edge_length"]), "wanted edge length"))
+        numbers.append((_number(facts["hausdorff"]), "outlines and mesh apart"))
+    if length := facts.get("settings", {}).get("edge_length"):
+        numbers.append((length if isinstance(length, str) else _number(length), "wanted edge length"))
     return "".join(f"<div><b>{text(number)}</b><span>{text(words)}</span></div>" for number, words in numbers)
 
 
@@ -117,7 +119,7 @@ def warnings(facts: dict[str, Any], seen: Sequence[Place]) -> str:
 
 
 def certificate(facts: dict[str, Any], seen: Sequence[Place]) -> str:
-    """Lay out the certificate as a table."""
+    """Lay out the certificate as a table, as far as there is one."""
     where = {place.at: i for i, place in enumerate(seen)}
 
     def at(name: str) -> int | None:
@@ -126,7 +128,7 @@ def certificate(facts: dict[str, Any], seen: Sequence[Place]) -> str:
         return where.get((float(first[0]), float(first[1]))) if first else None
 
     rows = [*_fidelity(facts, at), *_topology(facts), *_validity(facts), *_quality(facts, at)]
-    return f"<table>{''.join(rows)}</table>"
+    return f"<table>{''.join(rows)}</table>" if rows else '<p class="quiet">There is no image to judge this mesh by.</p>'
 
 
 def _fidelity(facts: dict[str, Any], at: Any) -> list[str]:
@@ -155,6 +157,8 @@ def _topology(facts: dict[str, Any]) -> list[str]:
     if "neighbours_missing" in facts:
         wrong = len(facts["neighbours_missing"]) + len(facts.get("neighbours_extra", []))
         rows.append(_row("Regions that touch differently", wrong, "0", wrong == 0))
+    if "unknown_labels" in facts:
+        rows.append(_row("Labels not in the image", len(facts["unknown_labels"]), "0", not facts["unknown_labels"]))
     return rows if len(rows) > 1 else []
 
 

@@ -56,7 +56,7 @@ def read_3mf(path):
             ElementTree.fromstring(archive.read(name))
         root = ElementTree.fromstring(archive.read("3D/3dmodel.model"))
     points = [[float(v.attrib[axis]) for axis in "xyz"] for v in root.iterfind(".//c:vertex", space)]
-    rows = [[int(t.attrib[key]) for key in ("v1", "v2", "v3", "p1")] for t in root.iterfind(".//c:triangle", space)]
+    rows = [[int(t.attrib.get(key, 0)) for key in ("v1", "v2", "v3", "p1")] for t in root.iterfind(".//c:triangle", space)]
     colours = [colour.attrib["color"] for colour in root.iter(f"{material}color")]
     notes = {note.attrib["name"]: note.text for note in root.iterfind("c:metadata", space)}
     faces = np.array(rows)
@@ -162,18 +162,46 @@ def test_off_keeps_every_digit(tmp_path, plate):
     assert np.array_equal(np.loadtxt(lines[16:], int), np.column_stack([np.full(12, 3), plate["triangles"]]))
 
 
-def test_3mf_has_units_a_colour_for_each_region_and_texts(tmp_path, plate):
-    save(tmp_path / "a.3mf", **plate, height=HEIGHT, field_data=TEXTS)
-    root, points, faces, colour, colours, notes = read_3mf(tmp_path / "a.3mf")
+def test_3mf_has_a_closed_object_in_its_colour_for_each_region(tmp_path, plate):
+    """One colour in each group, and the group at the object: what slicers make filaments of."""
+    save(tmp_path / "a.3mf", **plate, height=HEIGHT, names={3: 'bone "<a>"'}, field_data=TEXTS)
+    root, *_, notes = read_3mf(tmp_path / "a.3mf")
     assert root.attrib["unit"] == "centimeter"
-    assert is_closed(faces)
-    assert volume(points, faces) == pytest.approx(STRIP_AREA * HEIGHT, rel=1e-12)
+    space = {name: f"http://schemas.microsoft.com/3dmanufacturing/{long}/2015/02" for name, long in {"c": "core", "m": "material"}.items()}
+    groups = {group.attrib["id"]: [c.attrib["color"] for c in group] for group in root.iterfind(".//m:colorgroup", space)}
+    assert len(groups) == 2
+    assert all(len(colours) == 1 for colours in groups.values())
+    assert len({colour for (colour,) in groups.values()}) == 2
+    objects = root.findall(".//c:object", space)
+    assert [o.attrib["name"] for o in objects] == ['bone "<a>"', "region_7"]
+    assert {(o.attrib["type"], o.attrib["pindex"]) for o in objects} == {("model", "0")}
+    assert [o.attrib["pid"] for o in objects] == list(groups)
+    assert [item.attrib["objectid"] for item in root.iterfind("c:build/c:item", space)] == [o.attrib["id"] for o in objects]
+    assert len({r.attrib["id"] for r in root.find("c:resources", space)}) == 4
+    for o, side in zip(objects, (-1, 1), strict=True):
+        points = np.array([[float(v.attrib[axis]) for axis in "xyz"] for v in o.iterfind(".//c:vertex", space)])
+        faces = np.array([[int(t.attrib[key]) for key in ("v1", "v2", "v3")] for t in o.iterfind(".//c:triangle", space)])
+        assert is_closed(faces)
+        assert volume(points, faces) == pytest.approx(STRIP_AREA * HEIGHT / 2, rel=1e-12)
+        assert np.all(side * (points[:, 0] - 1.1) >= -1e-12)
+    assert notes["img2tri:regions"] == "3 7"
+    assert json.loads(notes["img2tri:made"].replace("\\xdc", "\\u00dc")) == json.loads(TEXTS["made"])
+
+
+def test_3mf_of_a_flat_mesh_has_a_colour_for_each_triangle(tmp_path, plate):
+    save(tmp_path / "a.3mf", **plate)
+    _, points, faces, colour, colours, _ = read_3mf(tmp_path / "a.3mf")
     assert len(set(colours)) == 2
     middle = points[faces][..., 0].mean(axis=1)
     assert np.all(middle[colour == 0] < 1.1)
     assert np.all(middle[colour == 1] > 1.1)
-    assert notes["img2tri:regions"] == "3 7"
-    assert json.loads(notes["img2tri:made"].replace("\\xdc", "\\u00dc")) == json.loads(TEXTS["made"])
+
+
+def test_3mf_of_several_regions_is_read_by_trimesh(tmp_path, plate):
+    save(tmp_path / "a.3mf", **plate, height=HEIGHT, names={3: "bone"})
+    scene = trimesh.load_scene(tmp_path / "a.3mf")
+    assert len(scene.geometry) == 2
+    assert all(body.is_watertight and body.volume == pytest.approx(STRIP_AREA * HEIGHT / 2) for body in scene.geometry.values())
 
 
 def test_3mf_is_in_millimetres_and_an_open_mesh_is_a_surface(tmp_path, plate):

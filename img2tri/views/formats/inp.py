@@ -3,7 +3,8 @@
 Each region is an ELSET; each set of facets an NSET of its nodes and a SURFACE of its element sides, an interface that of the region that
 comes first in its name. The file holds the mesh and nothing else, to be included in an analysis by ``*INCLUDE, INPUT=mesh.inp``, or in a
 ``*PART``. Names are made to fit, see `img2tri.views.formats.text.identifiers`; a comment tells where one had to be changed. Lines and
-numbers keep to the limits of Abaqus, 20 characters for a number.
+numbers keep to the limits of Abaqus, 20 characters for a number. Plane elements lie at z = 0, whatever the height of the mesh, as CalculiX
+takes no others.
 
 With ``deck=True`` it is an analysis that runs as it is, to be filled with the materials and loads of the user: every separate body is held
 at its lowest boundary vertices and drawn up at its highest.
@@ -58,7 +59,7 @@ def inp(made: Cells, *, deck: bool = False, plane: str = "stress") -> dict[str, 
     lines = ["*HEADING", "img2tri"] if deck else []
     lines += [f"** {MARK}", *notes(made.texts, "** ")]
     lines += notes({plain: f"named {name}" for name, plain in named.items() if plain != name}, "** ")
-    lines += ["*NODE", *_nodes(made.points)]
+    lines += ["*NODE", *_nodes(made.points if made.solid else made.points * (1, 1, 0))]
     for label, name in made.names.items():
         mine = np.flatnonzero(made.regions == label)
         lines.append(f"*ELEMENT, TYPE={kind}, ELSET={named[name]}")

@@ -185,7 +185,7 @@ def _version_4(sections: dict[str, str]) -> tuple[Ints, Floats, _Blocks]:
     count, at, blocks = int(whole[0]), 4, []
     for _ in range(count):
         dimension, entity, kind, n = whole[at : at + 4].tolist()
-        rows = whole[at + 4 : at + 4 + n * (1 + _NODES[kind])].reshape(n, -1)
+        rows = whole[at + 4 : at + 4 + n * (1 + _NODES[kind])].reshape(n, 1 + _NODES[kind])
         blocks.append((dimension, group.get((dimension, entity), 0), kind, rows))
         at += 4 + rows.size
     order = np.argsort(all_numbers := np.concatenate(numbers), kind="stable")
@@ -224,12 +224,13 @@ def _cards(text: str) -> Iterator[list[str]]:
             if card:
                 yield card
             card = [fields[0].rstrip("*").upper(), *fields[1:]]
-    yield card
+    if card:
+        yield card
 
 
 def _real(text: str) -> float:
-    """Read a number as Nastran writes it: an exponent may follow without an E."""
-    return float(re.sub(r"(?<=[\d.])([+-]\d+)$", r"E\1", text) if text else 0)
+    """Read a number as Nastran writes it: an exponent may follow behind a D, or no letter at all; nothing is 0."""
+    return float(re.sub(r"(?<=[\d.])D?([+-]?\d+)$", r"E\1", text) if re.search(r"[\d.](D|[+-]\d)", text) else text or 0)
 
 
 READERS = {".msh": read_msh, ".bdf": read_bdf}
