@@ -9,15 +9,15 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from img2tri.errors import MeshError, choice
+from img2tri.errors import MeshError, ParameterError, choice
 from img2tri.records import Floats, Frame, Ints, Origin
 from img2tri.triangles.checks import check_mesh, check_regions
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-    from pyvista import PolyData
+    from pyvista import PolyData, UnstructuredGrid
     from shapely import MultiPolygon, Polygon
-    from trimesh import Trimesh
+    from trimesh import Scene, Trimesh
 
     from img2tri.report import Report
     from img2tri.triangles.quality import Quality
@@ -70,6 +70,12 @@ class TriangleMesh:
         counts = ((len(self.triangles), "triangle"), (len(self.vertices), "vertices"), (len(set(self.regions.tolist())), "region"))
         text = ", ".join(f"{n} {word}{'s' if n != 1 and word != 'vertices' else ''}" for n, word in counts)
         return f"TriangleMesh: {text}, {x0:g} <= x <= {x1:g}, {y0:g} <= y <= {y1:g}"
+
+    def _repr_html_(self) -> str:
+        """Return a picture with a line of numbers, for notebooks."""
+        from img2tri.views.notebook import html
+
+        return html(self.vertices, self.triangles, self.regions, upward=self.frame.upward)
 
     @cached_property
     def report(self) -> Report:
@@ -136,20 +142,38 @@ class TriangleMesh:
             )  # fmt: skip
         return replace(self, vertices=moved)
 
-    def to_trimesh(self, height: float | None = None) -> Trimesh:
+    def to_trimesh(self, height: float | None = None, *, split: bool = False) -> Trimesh | Scene:
         """Return a ``trimesh.Trimesh`` at z = 0, or with `height` (world units) the closed solid from z = 0 to z = height.
 
-        Face attributes: ``region`` and ``q``.
+        Face attributes: ``region`` and ``q``. With `split` (and a height), a ``trimesh.Scene`` with a closed body for each region;
+        neighbours share their walls.
         """
+        if split:
+            from img2tri.views.bodies import to_scene
+
+            return to_scene(self.vertices, self.triangles, self.regions, height=height, names=self.names, **self._data())
         from img2tri.views.trimesh_objects import to_trimesh
 
         return to_trimesh(self.vertices, self.triangles, self.regions, height=height, **self._data())
 
-    def to_pyvista(self, height: float | None = None) -> PolyData:
-        """Return a ``pyvista.PolyData`` at z = 0, or with `height` (world units) the closed solid from z = 0 to z = height.
+    def to_pyvista(
+        self, height: float | None = None, *, solid: bool = False, layers: int = 1, order: int = 1
+    ) -> PolyData | UnstructuredGrid:
+        """Return a ``pyvista.PolyData`` at z = 0, or with `height` (world units) the closed surface from z = 0 to z = height.
 
-        Cell arrays: ``region`` and ``q``.
+        Cell arrays: ``region`` and ``q``. With `solid`, an UnstructuredGrid of wedges in `layers`; with ``order=2``, one of
+        quadratic triangles, or wedges.
         """
+        if height is not None and order == 2 and not solid:
+            raise ParameterError("order: expected 1 for the surface of a solid, found 2; solid=True gives quadratic wedges")
+        if solid or order != 1 or layers != 1:
+            from img2tri.views.wedges import to_elements
+
+            if solid and height is None:
+                raise ParameterError("height: expected a length with solid=True, found None")
+            return to_elements(
+                self.vertices, self.triangles, self.regions, height=height, layers=layers, order=order, **self._data()
+            )  # fmt: skip
         from img2tri.views.pyvista_objects import to_pyvista
 
         return to_pyvista(self.vertices, self.triangles, self.regions, height=height, **self._data())

@@ -153,3 +153,64 @@ def check_frame(vertices, triangles, meshed):
         covered = np.abs(np.diff(ends[on][:, :, 1 - axis], axis=1)).sum()
         runs = int((np.diff(side.astype(int)) != 0).sum())
         assert abs(covered - side.sum()) <= 0.5 * runs + 1e-9
+
+
+def joined_topology(labels, *, background=0, connectivity=4):
+    """Components and holes of each label, by the rule for checkerboards: with 4 the lower label is joined, with 8 the higher.
+
+    The label map is drawn twice as large, with the sides and corners of pixels in between. A side belongs to a label if
+    both pixels beside it do; a corner, if all four pixels around it do, or the two on the diagonal that is joined::
+
+        a - b        a . b
+        - + -   or   . a .      a - b: the side between a and b
+        c - d        c . a
+    """
+    values = [v for v in np.unique(labels).tolist() if v != background]
+    number = np.zeros(labels.shape, int)
+    for i, v in enumerate(values, start=1):
+        number[labels == v] = i
+    a, b, c, d = number[:-1, :-1], number[:-1, 1:], number[1:, :-1], number[1:, 1:]
+    falling, rising = (a == d) & (b != a) & (c != a), (b == c) & (a != b) & (d != b)
+    pick = np.minimum if connectivity == 4 else np.maximum
+    large = np.full([2 * k + 1 for k in labels.shape], -1)
+    large[1::2, 1::2] = number
+    large[1::2, 2:-1:2] = np.where(number[:, 1:] == number[:, :-1], number[:, 1:], -1)
+    large[2:-1:2, 1::2] = np.where(number[1:] == number[:-1], number[1:], -1)
+    equal = (a == b) & (c == d) & (a == c)
+    large[2:-1:2, 2:-1:2] = np.select([equal, falling & rising, falling, rising], [a, pick(a, b), a, b], -1)
+    return {v: (ndimage.label(large == i, np.ones((3, 3)))[1], ndimage.label(large != i)[1] - 1) for i, v in enumerate(values, start=1)}
+
+
+def polygon_topology(polygons):
+    """Components and holes of polygons by label."""
+    parts = {label: shapely.get_parts(p) for label, p in polygons.items()}
+    return {label: (len(p), int(shapely.get_num_interior_rings(p).sum())) for label, p in parts.items()}
+
+
+def check_coverage(polygons, labels, centres, *, background=0, connectivity=4):
+    """Polygons by label are valid, share their interfaces, and have the topology of the label map.
+
+    With pixel centres (h, w, 2), each of them lies in the polygon of its label only.
+    """
+    assert list(polygons) == [v for v in np.unique(labels).tolist() if v != background]
+    assert all(p.is_valid for p in polygons.values())
+    assert shapely.coverage_is_valid(list(polygons.values()))
+    assert polygon_topology(polygons) == joined_topology(labels, background=background, connectivity=connectivity)
+    if centres is not None:
+        for label, p in polygons.items():
+            assert np.array_equal(shapely.contains_xy(p, centres[..., 0], centres[..., 1]), labels == label)
+
+
+def topologies(triangles, keys):
+    """Components (through edges) and holes of the triangles of each key 0, 1, ..., as two arrays (k,)."""
+    size = int(keys.max()) + 1
+    edges = np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1)
+    owner, triangle = np.tile(keys, 3), np.tile(np.arange(len(triangles)), 3)
+    own_edges, edge = np.unique(np.column_stack([edges, owner]), axis=0, return_inverse=True)
+    own_vertices = np.unique(np.column_stack([triangles.ravel(), np.repeat(keys, 3)]), axis=0)
+    # Triangles and edges of one key as the two sides of a graph.
+    graph = sparse.coo_array((np.ones(len(edge)), (triangle, len(triangles) + edge.ravel())), shape=(len(triangles) + len(own_edges),) * 2)
+    _, part = sparse.csgraph.connected_components(graph, directed=False)
+    components = np.bincount(keys[np.unique(part[: len(triangles)], return_index=True)[1]], minlength=size)
+    euler = np.bincount(own_vertices[:, 1], minlength=size) - np.bincount(own_edges[:, 2], minlength=size) + np.bincount(keys, minlength=size)
+    return components, components - euler

@@ -97,3 +97,47 @@ ALL = MASKS | LABELS
 def turned(m: np.ndarray) -> list[np.ndarray]:
     """The eight rotations and mirror images."""
     return [np.ascontiguousarray(np.rot90(x, k)) for x in (m, m.T) for k in range(4)]
+
+
+def unturned(points: np.ndarray, shape: tuple[int, int], turn: int) -> np.ndarray:
+    """Points (n, 2) found in ``turned(m)[turn]``, carried back to m of shape (h, w); x right, y up."""
+    size = complex(shape[1], shape[0])
+    mirrored = complex(size.imag, size.real) if turn >= 4 else size
+    seen = complex(mirrored.imag, mirrored.real) if turn % 2 else mirrored
+    z = (points[:, 0] + 1j * points[:, 1] - seen / 2) * (-1j) ** (turn % 4)
+    if turn >= 4:
+        z = -1j * z.conj()
+    z = z + size / 2
+    return np.stack([z.real, z.imag], axis=1)
+
+
+def ellipse(n: int, axes: tuple[float, float], angle: float = 0.0, centre: tuple[float, float] | None = None) -> np.ndarray:
+    """An ellipse with these half axes, the first turned by `angle` degrees from x to y up; a disc if they are equal."""
+    u, v = _turned_grid(n, angle, centre)
+    return ((u / axes[0]) ** 2 + (v / axes[1]) ** 2 < 1).astype(int)
+
+
+def rectangle(n: int, sides: tuple[float, float], angle: float = 0.0, centre: tuple[float, float] | None = None) -> np.ndarray:
+    """A rectangle with these sides, the first turned by `angle` degrees from x to y up."""
+    u, v = _turned_grid(n, angle, centre)
+    return ((abs(u) < sides[0] / 2) & (abs(v) < sides[1] / 2)).astype(int)
+
+
+def _turned_grid(n: int, angle: float, centre: tuple[float, float] | None) -> tuple[np.ndarray, np.ndarray]:
+    cy, cx = centre or (n / 2, n / 2)
+    y, x = np.mgrid[:n, :n] + 0.5
+    z = ((x - cx) - 1j * (y - cy)) * np.exp(-1j * np.radians(angle))
+    return z.real, z.imag
+
+
+def gray_disc(n: int, radius: float, centre: tuple[float, float] | None = None, low: int = 0, high: int = 255) -> np.ndarray:
+    """A disc whose edge is drawn by area coverage, from 16 x 16 samples to a pixel."""
+    cy, cx = centre or (n / 2, n / 2)
+    y, x = np.mgrid[:n, :n] + 0.5
+    distance = np.hypot(x - cx, y - cy)
+    share = (distance < radius).astype(float)
+    r, c = np.nonzero(abs(distance - radius) < 1)
+    step = (np.arange(16) + 0.5) / 16
+    inside = np.hypot(c[:, None, None] + step - cx, (r[:, None] + step)[:, :, None] - cy) < radius
+    share[r, c] = inside.mean(axis=(1, 2))
+    return np.round(low + (high - low) * share).astype(np.uint8)

@@ -19,11 +19,11 @@ from img2tri.shapes.fitting import Sliding
 from img2tri.shapes.unrolling import Points, Unrolled, cross
 
 LENGTHS = (3, 4, 6, 8, 12, 16, 24, 32)  # crossings that a line is fitted to
-ROUND = 9.0  # px: lines of this length may meet at one radian on a circle, with some margin
+ROUND = 11.0  # px: lines of this length may meet at one radian on a circle, with some margin
 SHORTEST = 6.0  # px, the least length of a line that is not along rows or columns
 EXACT = 1e-6  # px, greatest distance of crossings from a line along rows or columns
 SLOPPY = 0.05  # of the link: how far a line may miss the range of a crossing
-BEYOND = 1.7  # of the room in its block: how far out a corner may lie, it is then put back into the block
+BEYOND = 1.8  # of the room in its block: how far out a corner may lie, it is then put back into the block
 SAME = 4  # crossings within which only one corner is kept
 
 
@@ -55,8 +55,8 @@ def find_corners(s: Sliding, heads: Points, room: complex) -> tuple[Ints, Points
     at = _bends(z, np.flatnonzero(line.own[:-1] & usable[:-1] & usable[1:]))
     if not len(at):
         return np.zeros(0, np.int64), np.zeros(0, np.complex128)
-    backs = [_longest_line(s, line, z, usable, at - skip, -1) for skip in (0, 1)]
-    aheads = [_longest_line(s, line, z, usable, at + 1 + skip, 1) for skip in (0, 1)]
+    backs = [_longest_line(s, line, z, usable, at - skip, -1) for skip in (0, 1, 2)]
+    aheads = [_longest_line(s, line, z, usable, at + 1 + skip, 1) for skip in (0, 1, 2)]
     # A corner may lie on a link; then the crossing there belongs to neither line.
     score, off = np.zeros(len(at)), np.zeros(len(at), np.complex128)
     for back in backs:

@@ -139,7 +139,7 @@ class MeshAccessor:
         points[:, :2] = mesh.vertices
         smooth.points = points
         if "q" in smooth.cell_data:
-            smooth.cell_data["q"] = mesh.to_pyvista().cell_data["q"]
+            smooth.cell_data["q"] = mesh.quality().arrays["q"]
         return smooth
 
     def _triangle_mesh(self) -> img2tri.TriangleMesh:

@@ -249,7 +249,7 @@ function frame() {
 
 /** Rings around the places of warnings, with the number of the warning. */
 function marks(px, py, d) {
-  for (const place of view.places) {
+  for (const place of [...view.places].sort((a, b) => a.first - b.first)) {
     const x = px(place.x), y = py(place.y), chosen = place === state.place;
     if (!place.number && !chosen) continue;
     const r = (chosen ? 15 : place.first ? 11 : 5) * d;
