@@ -204,6 +204,9 @@ class TriangleMesh:
         from img2tri.views.figure import draw
 
         values = None if image is None else read(image).values
+        kept = self.origin.settings.get("crop") if self.origin and values is not None else None
+        if kept and values is not None and values.shape[:2] == tuple(kept["of"]):
+            values = values[slice(*kept["rows"]), slice(*kept["columns"])]
         return draw(
             self.vertices, self.triangles, regions=self.regions, values=self._data()["cell_data"]["q"], frame=self.frame,
             image=values, colour_by=colour_by, path=path,

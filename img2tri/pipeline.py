@@ -6,7 +6,7 @@ image -> labels -> outlines -> points -> triangles -> mesh
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, TypedDict, Unpack
 
 from img2tri.conforming import conform, trace_outlines, wanted_sizes
@@ -17,7 +17,7 @@ from img2tri.raster.binarizing import Level
 from img2tri.raster.cropping import crop as cropped
 from img2tri.raster.reading import read
 from img2tri.raster.zones import Zones, cleaned, find_zones
-from img2tri.records import Floats, Origin, Outlines
+from img2tri.records import Floats, Origin, Outlines, checked_names
 from img2tri.shapes.fields import EdgeLength
 from img2tri.shapes.links import Links, pixel_areas, pixels_beside
 from img2tri.shapes.polygons import enclosed_areas
@@ -169,6 +169,10 @@ def mesh_image(
     """
     tell = progress or _silent
     choice("recipe", recipe, RECIPES)
+    names = checked_names(names)
+    labels = list(labels) if isinstance(labels, Iterator) else labels  # looked at twice
+    if background is not None and (isinstance(background, bool) or not hasattr(background, "__index__")):
+        raise ParameterError(f"background: expected an integer or None, found {background!r}")
     choice("outline", outline, ("smooth", "pixel"))
     choice("corners", corners, ("auto", "keep", "round"))
     choice("smoothing", smoothing or "none", SMOOTHINGS)
@@ -194,6 +198,9 @@ def mesh_image(
     outlines, links = trace_outlines(zones, frame, connectivity=connectivity, corners=corners, outline=outline)
     if len(outlines.labels) == 1:
         raise ImageError(f"image: expected pixels to mesh, found none{_advice(zones.threshold)}")
+    for label in names:
+        if label not in outlines.labels[1:]:
+            raise ParameterError(f"names: expected labels of the image, found {label}; it has {outlines.labels[1:21].tolist()}")
 
     tell("points", 0.3)
     within = frame.length("tolerance", tolerance) / frame.pixel
@@ -242,11 +249,12 @@ def mesh_image(
         "iterations": iterations,
         "spacing": frame.spacing,
         "seed": seed,
+        "names": names,
         "source": picture.source,
         **paper,
     }
     mesh = TriangleMesh(
-        frame.world(made.vertices), made.triangles, outlines.labels[made.regions], frame, names or {},
+        frame.world(made.vertices), made.triangles, outlines.labels[made.regions], frame, names,
         Origin(
             recipe, settings, outlines, *pixels_beside(links), areas=_expected_areas(zones, outlines, links),
             counted={**made.counted, "removed": removed},

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -129,6 +130,24 @@ def _quantity(name: str, value: float | str, units: dict[str, float], example: s
     else:
         number, scale = value, 1.0
     return scale * (finite(name, number, least=0) if zero else finite(name, number, above=0))
+
+
+def checked_names(names: Mapping[int, str] | None) -> dict[int, str]:
+    """Return a copy of the names of regions, or say why they are none.
+
+    Examples
+    --------
+    >>> checked_names({1: "bone"})
+    {1: 'bone'}
+    """
+    if names is None:
+        return {}
+    if not isinstance(names, Mapping):
+        raise ParameterError(f"names: expected names by label, like {{1: 'bone'}}, found {names!r}")
+    for label, name in names.items():
+        if isinstance(label, bool) or not hasattr(label, "__index__") or not (isinstance(name, str) and name):
+            raise ParameterError(f"names: expected whole numbers with names, like {{1: 'bone'}}, found {label!r}: {name!r}")
+    return {int(label): name for label, name in names.items()}
 
 
 @dataclass(frozen=True, eq=False)

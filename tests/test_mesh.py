@@ -360,7 +360,6 @@ def test_the_figure_shows_the_image_where_it_lies(holed):
     assert over.axes[0].get_xlim() == (0, 25)
 
 
-@pytest.mark.xfail(strict=True, reason="the whole image is laid where its crop is")
 def test_the_figure_of_a_crop_shows_the_image_where_it_lies():
     mesh = mesh_image(HOLED, crop=(20, 0, 50, 50), edge_length=5)
     (image,) = mesh.plot(HOLED).axes[0].images

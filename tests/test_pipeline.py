@@ -422,7 +422,6 @@ def test_names_are_kept_with_the_mesh():
     assert mesh_image(DISC).names == {}
 
 
-@pytest.mark.xfail(strict=True, reason="the mesh holds the very dictionary of the user, and files and report know nothing of it")
 def test_names_are_those_of_the_moment_and_in_the_report():
     names = {1: "bone"}
     mesh = mesh_image(DISC, names=names)
@@ -431,14 +430,12 @@ def test_names_are_those_of_the_moment_and_in_the_report():
     assert "bone" in mesh.report.to_json()
 
 
-@pytest.mark.xfail(strict=True, reason="not looked at")
 @pytest.mark.parametrize("options", [{"names": ["bone"]}, {"names": {"a": "bone"}}, {"edge_length": {7: 3}}, {"background": "white"}])
 def test_what_means_nothing_is_refused(options):
     with pytest.raises(ParameterError):
         mesh_image(DISC, **options)
 
 
-@pytest.mark.xfail(strict=True, reason="an iterator is used up before it is written down")
 def test_labels_from_an_iterator_are_in_the_report():
     assert mesh_image(GRAINS, labels=iter([2, 1])).report.settings["labels"] == [1, 2]
 

@@ -207,7 +207,6 @@ NOISE = specimens.drawn(
 GRAY = np.array([[1, -25, 38, 55, 70], [19, 67, -8, -21, 16], [-18, 18, 49, -23, -26], [22, 44, 39, -24, 49], [-14, 43, 52, 56, 63]]) / 10
 
 
-@pytest.mark.xfail(strict=True, reason="vertices moved outwards for the sake of areas may go too far beside points that went back")
 @pytest.mark.parametrize(
     ("image", "options"),
     [

@@ -23,7 +23,7 @@ def keep_areas(d: Draft, *, tolerance: float) -> Draft:
     """Move breaks sideways so that the chords enclose what the outlines enclose, chain by chain.
 
     A chord on a curve cuts a lens off. Each break takes up half of the lenses beside it; what then is missing of a chain, since
-    some breaks cannot move, is shared evenly by the others. No break moves by more than half the tolerance at a time. Where
+    some breaks cannot move, is shared evenly by the others. No break ends farther from the outline than half the tolerance. Where
     that leaves a small region with too much or too little, a break is added, to be moved the next time.
     """
     first, last = d.pieces
@@ -50,8 +50,11 @@ def keep_areas(d: Draft, *, tolerance: float) -> Draft:
     share = np.bincount(chain, np.where(movable, width / 2, 0), len(ring))
     shift += np.where(movable, np.divide(missing, share, out=np.zeros_like(share), where=share > 0)[chain], 0)
     outwards = -1j * (ahead - behind)
-    step = np.clip(shift, -tolerance / 2, tolerance / 2)
-    moves = step * outwards / np.maximum(np.abs(outwards), 1e-12)
+    outwards /= np.maximum(np.abs(outwards), 1e-12)
+    # Along the outline a break is free, but not to leave it.
+    off = (d.moved * outwards.conj()).real
+    step = np.where(movable, np.clip(off + shift, -tolerance / 2, tolerance / 2) - off, 0)
+    moves = step * outwards
     moves[end] = moves[begin]
 
     lacking = np.abs(np.bincount(chain[first], lens, len(ring)) - np.bincount(chain, step * width / 2, len(ring)))

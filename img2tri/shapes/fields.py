@@ -101,7 +101,10 @@ def _by_label(name: str, wanted: Mapping[int, float | str], frame: Frame, labels
         raise ParameterError(f"{name}: expected lengths by label, found none")
     result = np.full(labels.shape, max(lengths.values()))
     for label, length in lengths.items():
-        result[labels == label] = length
+        mine = labels == label
+        if not mine.any():
+            raise ParameterError(f"{name}: expected labels of the image, found {label!r}, which it does not have")
+        result[mine] = length
     return result
 
 

@@ -121,14 +121,15 @@ def named_sets(
     _, ring, area = rings(vertices, triangles, twins)
     found[OUTER] = free[(kind < 0) & (area[ring] >= 0)]
     holes = np.flatnonzero(area < 0)
-    # Areas of all rings differ by signs and sizes only: the most negative one is that of the largest hole.
+    # The area of a hole is negative, so that of the largest one comes first.
     for i, hole in enumerate(holes[np.argsort(area[holes], kind="stable")].tolist(), 1):
         found[f"hole_{i}"] = free[(kind < 0) & (ring == hole)]
     pairs = np.stack([regions[inside // 3], regions[twins[inside] // 3]], axis=1)
     each, pair = np.unique(pairs, axis=0, return_inverse=True)
     order = np.argsort(pair.ravel(), kind="stable")
     for (a, b), sides in zip(each.tolist(), np.split(inside[order], np.cumsum(np.bincount(pair.ravel()))[:-1]), strict=False):
-        found[f"{called[a]}__{called[b]}"] = sides
+        name = f"{called[a]}__{called[b]}"
+        found[name if name not in found else f"{name}_{a}_{b}"] = sides
 
     tags = {name: i for i, name in enumerate((*FRAME, OUTER), 1)}
     tags |= {name: i for i, name in enumerate((name for name in found if name not in tags), len(tags) + 1)}

@@ -82,7 +82,7 @@ def test_an_older_file_stays_whole_if_the_disk_refuses(tmp_path, monkeypatch):
     assert after["a.xdmf"] == before["a.xdmf"]
 
 
-def test_the_same_mesh_gives_the_same_bytes_at_any_time_in_any_process(tmp_path, monkeypatch):
+def test_the_same_mesh_gives_the_same_bytes_at_any_time_in_any_process(tmp_path):
     code = """
 from views.solver_meshes import KINDS, made
 from img2tri.views.export import EXPORTS, export

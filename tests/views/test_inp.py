@@ -11,7 +11,7 @@ import pytest
 from views.plates import cells
 from views.solver_meshes import BOUNDS, HEIGHT, KINDS, TEXTS, made, plate, program, sizes
 
-from img2tri import ParameterError
+from img2tri import MeshError, ParameterError
 from img2tri.views.cells import flat_cells
 from img2tri.views.formats.inp import inp
 
@@ -184,6 +184,14 @@ def test_options_change_the_file_and_others_are_refused():
     assert b"*STEP" not in inp(mesh)[""]
     with pytest.raises(ParameterError, match="plane: expected one of 'stress', 'strain', found 'shell'"):
         inp(mesh, plane="shell")
+
+
+def test_no_deck_is_made_of_wedges_whose_ends_are_not_known():
+    mesh = made("wedge")
+    loose = type(mesh)(**{**vars(mesh), "sides": {}, "tags": {}})
+    assert inp(loose)[""]
+    with pytest.raises(MeshError, match="deck: expected wedges in layers"):
+        inp(loose, deck=True)
 
 
 def test_names_keep_their_case_and_no_two_are_alike():

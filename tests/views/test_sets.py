@@ -137,6 +137,12 @@ def test_names_are_the_users_and_unique():
     assert list(plate_sets(names=None).labels) == ["region_-1", "region_4"]
 
 
+def test_no_interface_is_lost_if_names_read_alike():
+    vertices, triangles = cells(np.ones((1, 4), bool))
+    sets = named_sets(vertices, triangles, np.repeat([1, 2, 3, 4], 2), names={1: "a__b", 2: "c", 3: "a", 4: "b__c"})
+    assert sorted(sets.edges) == ["a__b__c", "a__b__c_3_4", "c__a", "outer"]
+
+
 def test_a_region_named_like_a_set_is_refused():
     with pytest.raises(ParameterError, match="names: expected names other than those of sets of edges, found 'hole_1' for region 4"):
         plate_sets(names={4: "hole_1"})

@@ -16,9 +16,9 @@ from itertools import chain
 
 import numpy as np
 
-from img2tri.errors import choice
+from img2tri.errors import MeshError, choice
 from img2tri.records import Bools, Floats
-from img2tri.views.cells import Cells
+from img2tri.views.cells import Z_MIN, Cells
 from img2tri.views.formats.text import MARK, fitted, identifiers, in_lines, notes, numbered
 from img2tri.views.sets import rings
 
@@ -52,6 +52,8 @@ def inp(made: Cells, *, deck: bool = False, plane: str = "stress") -> dict[str, 
     ------
     ParameterError
         If `plane` is another.
+    MeshError
+        If an analysis is wanted of wedges that do not stand in layers on a plane mesh.
     """
     letters = {"stress": "CPS", "strain": "CPE"}[choice("plane", plane, PLANES)]
     kind = _TYPES[made.kind] if made.solid else f"{letters}{_IN_PLANE[made.kind]}"
@@ -59,7 +61,7 @@ def inp(made: Cells, *, deck: bool = False, plane: str = "stress") -> dict[str, 
     lines = ["*HEADING", "img2tri"] if deck else []
     lines += [f"** {MARK}", *notes(made.texts, "** ")]
     lines += notes({plain: f"named {name}" for name, plain in named.items() if plain != name}, "** ")
-    lines += ["*NODE", *_nodes(made.points if made.solid else made.points * (1, 1, 0))]
+    lines += ["*NODE", *_nodes(made.points if made.solid else made.points * (1, 1, 0) + 0.0)]
     for label, name in made.names.items():
         mine = np.flatnonzero(made.regions == label)
         lines.append(f"*ELEMENT, TYPE={kind}, ELSET={named[name]}")
@@ -99,7 +101,9 @@ def _analysis(made: Cells, regions: list[str]) -> list[str]:
 
 def _ends(made: Cells) -> tuple[Bools, Bools]:
     """Return the nodes at the lower end of each body, which is within one outer ring of the boundary, and those at its upper end."""
-    flat = made.cells[: len(made.sides["z_min"]), :3] if made.solid else made.cells[:, :3]
+    if made.solid and Z_MIN not in made.sides:
+        raise MeshError("deck: expected wedges in layers, so that their ends are known, found others; write the mesh alone")
+    flat = made.cells[: len(made.sides[Z_MIN]), :3] if made.solid else made.cells[:, :3]
     corners, y = flat.ravel(), made.points[:, 1]
     sides, ring, area = rings(made.points, flat)
     on = corners[sides]
