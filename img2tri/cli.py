@@ -1,4 +1,4 @@
-"""The command line: ``img2tri mesh`` and ``img2tri quality``. All that is printed is printed here.
+"""The command line: ``img2tri mesh``, ``view-report`` and ``quality``. All that is printed is printed here.
 
 Options go to `img2tri.mesh_image` under the names it knows, and only if they were given, so its defaults and its checks are the only
 ones. Whatever is not as it must be becomes one line on stderr and exit status 2; one bad file does not stop the others. Nothing heavy is
@@ -10,12 +10,13 @@ from __future__ import annotations
 import io
 import os
 import re
+import shlex
 import sys
 import time
 from argparse import Namespace
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from img2tri.errors import FileError, Img2triError, ParameterError, finite
 from img2tri.options import MESH_OPTIONS, parse
@@ -47,10 +48,13 @@ def main(argv: Sequence[str] | None = None) -> int:
     SystemExit
         With status 0 for --help and --version, 2 for options that cannot be understood.
     """
-    arguments = parse(sys.argv[1:] if argv is None else argv)
+    typed = sys.argv[1:] if argv is None else argv
+    arguments = parse(typed)
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")  # the name of a file may hold what the terminal cannot show
     try:
+        if arguments.command == "view-report":
+            return _view_report(arguments, typed)
         return (_mesh if arguments.command == "mesh" else _quality)(arguments)
     except Img2triError as error:
         return _complain(error)
@@ -98,21 +102,61 @@ def _mesh(arguments: Namespace) -> int:
 def _made(job: _Job, arguments: Namespace, progress: Callable[[str, float], None]) -> TriangleMesh:
     """Mesh one image and write its files."""
     from img2tri.pipeline import mesh_image
-    from img2tri.raster.cropping import crop
-    from img2tri.raster.reading import read
     from img2tri.views.storing import store, writable
 
-    options = {name: getattr(arguments, name) for name in MESH_OPTIONS if name in arguments}
+    options = _mesh_options(arguments)
     mesh = mesh_image(job.image, progress=progress, **options)
     for path in job.meshes:
         mesh.save(path, height=arguments.height)
     if job.plot:
-        place = {name: options[name] for name in ("spacing", "origin", "page", "max_pixels") if name in options}
-        values = crop(read(job.image, **place), options.get("crop")).values
-        mesh.plot(values, job.plot, colour_by=None if arguments.colour_by == "none" else arguments.colour_by)
+        mesh.plot(_pixels(job.image, options), job.plot, colour_by=None if arguments.colour_by == "none" else arguments.colour_by)
     if job.report:
         store(writable(job.report, [".json"]), (mesh.report.to_json() + "\n").encode())
     return mesh
+
+
+def _mesh_options(arguments: Namespace) -> dict[str, Any]:
+    """Collect the options that go on to mesh_image, if they were given."""
+    return {name: getattr(arguments, name) for name in MESH_OPTIONS if name in arguments}
+
+
+def _pixels(image: str, options: dict[str, Any]) -> Any:
+    """Read the part of an image that was meshed."""
+    from img2tri.raster.cropping import crop
+    from img2tri.raster.reading import read
+
+    place = {name: options[name] for name in ("spacing", "origin", "page", "max_pixels") if name in options}
+    return crop(read(image, **place), options.get("crop")).values
+
+
+def _view_report(arguments: Namespace, typed: Sequence[str]) -> int:
+    """Run ``img2tri view-report``."""
+    from img2tri.pipeline import mesh_image
+    from img2tri.triangles.quality import measure
+    from img2tri.views.page import page
+    from img2tri.views.storing import store, writable
+
+    target, options = writable(arguments.output, [".html"]), _mesh_options(arguments)
+    with _Bar("", 0.0, 1.0, shown=sys.stderr.isatty() and not arguments.quiet) as bar:
+        mesh = mesh_image(arguments.image, progress=bar, **options)
+    text = page(
+        mesh.vertices,
+        mesh.triangles,
+        **measure(mesh.vertices, mesh.triangles, ["q", "min_angle"]),
+        frame=mesh.frame,
+        report=mesh.report.to_json(),
+        regions=mesh.regions,
+        image=_pixels(arguments.image, options),
+        names=mesh.names,
+        title=os.path.basename(arguments.image),
+        command=shlex.join(["img2tri", *typed]),
+        unit="",
+    )
+    store(target, text.encode())
+    if not arguments.quiet:
+        _tell(arguments.image, mesh)
+        print(f"{'saved':<12}{arguments.output}")
+    return DONE
 
 
 def _jobs(arguments: Namespace) -> list[_Job]:

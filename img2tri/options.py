@@ -25,6 +25,7 @@ EXAMPLES = """examples:
   img2tri mesh slice.png -o bone.stl --threshold otsu --spacing 0.5 --height 5
   img2tri mesh grains.png -o grains.vtu --labels --edge-length 2%
   img2tri mesh scans/*.png -o "meshes/{stem}.ply" --report "meshes/{stem}.json"
+  img2tri view-report femur.png -o femur.html --edge-length 8
   img2tri quality femur.stl
 """
 MESH = """Mesh images: the white zone, or every label of a label map.
@@ -32,6 +33,10 @@ MESH = """Mesh images: the white zone, or every label of a label map.
 Lengths are in world units (8), pixels (8px) or percent of the image diagonal
 (2%). A pixel is 1 world unit unless --spacing says otherwise. A value that
 begins with a minus is joined by =, as in --origin=-5,-5.
+"""
+PAGE = """Mesh an image and write a page about it: the mesh over the image, to zoom into, a
+histogram of its quality, its certificate, and the command that makes it again.
+One file, which needs nothing else to be looked at. Options are those of mesh.
 """
 QUALITY = """Print a table of the quality of plane meshes.
 
@@ -98,7 +103,20 @@ def _parser() -> ArgumentParser:
         formatter_class=_formatter,
         allow_abbrev=False,
     )
+    _add_files(mesh)
     _add_mesh_options(mesh)
+    page = commands.add_parser(
+        "view-report",
+        help="a page about a mesh",
+        usage="img2tri view-report IMAGE -o PAGE [options]",
+        description=PAGE,
+        formatter_class=_formatter,
+        allow_abbrev=False,
+    )
+    page.add_argument("image", metavar="IMAGE", help="PNG, TIFF, JPEG, BMP and others")
+    page.add_argument("-o", "--output", required=True, metavar="PAGE", help=".html")
+    page.add_argument("--quiet", action="store_true", help="print errors only")
+    _add_mesh_options(page)
     quality = commands.add_parser(
         "quality", help="judge meshes", description=QUALITY, formatter_class=_formatter, allow_abbrev=False
     )
@@ -110,8 +128,8 @@ def _formatter(prog: str) -> RawDescriptionHelpFormatter:
     return RawDescriptionHelpFormatter(prog, max_help_position=30)
 
 
-def _add_mesh_options(parser: ArgumentParser) -> None:
-    """Add what ``img2tri mesh`` knows. An option without a default here is left to mesh_image."""
+def _add_files(parser: ArgumentParser) -> None:
+    """Add the images and the files that ``img2tri mesh`` makes of them."""
     parser.add_argument("images", nargs="+", metavar="IMAGE", help="PNG, TIFF, JPEG, BMP and others")
 
     about = "With several images, names hold {stem}, which becomes the name of the image without folder and suffix."
@@ -125,6 +143,9 @@ def _add_mesh_options(parser: ArgumentParser) -> None:
     add("--report", metavar="REPORT", help=".json: what the mesh keeps of what was promised; a warning for each promise that it does not")
     add("--quiet", action="store_true", help="print errors and warnings only")
 
+
+def _add_mesh_options(parser: ArgumentParser) -> None:
+    """Add the options of mesh_image. One without a default here is left to mesh_image."""
     add = parser.add_argument_group("what is meshed", argument_default=SUPPRESS).add_argument
     add("--threshold", type=_number_or_word, metavar="T", help="gray level, above which is white, or otsu (default: the middle of "
         "two values, else otsu; the paper's recipes 240)")  # fmt: skip

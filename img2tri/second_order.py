@@ -34,7 +34,7 @@ from img2tri.shapes.unrolling import Points, Unrolled, convolve, cross, unshrink
 from img2tri.triangles.topology import directed_edges, unique_edges
 
 SCALES = (2.2, 4.6, 9.2)  # standard deviations of the Gaussians that smooth outlines, in points of theirs (0.7 to 1 px apart)
-STRAYING = 0.25  # px, how far smoothing may take an outline away from where it was
+STRAYING = 0.35  # px, how far smoothing may take an outline away from where it was
 REACH = 1.0  # px over the tolerance: how far from a side its outline is looked for
 LEAST = 0.1  # of the Jacobian of the straight triangle: what a curved one has at least
 HALVINGS = 4  # how often a node is pulled back half-way before it is put back altogether
@@ -145,7 +145,7 @@ def _curved_sides(
     start, stop = edges[edge].T
     start, stop = np.where(turned, stop, start), np.where(turned, start, stop)
     low, high = np.minimum(left, right)[edge], np.maximum(left, right)[edge]
-    return _Sides(edge, start, stop, low, high), walls.any(axis=1)
+    return _Sides(edge, start, stop, low, high), np.asarray(walls.any(axis=1))
 
 
 def _bent(z: Points, edges: Ints, elements: Ints, found: tuple[_Sides, Bools], curves: _Curves) -> Points:
@@ -202,9 +202,9 @@ class _Curves:
         self._tree = cKDTree(np.stack([self._z.real, self._z.imag], axis=1))
 
     def offsets(self, places: Points, headings: Points, left: Ints, right: Ints) -> Points:
-        """How far (k,) to go from places, at a right angle to a heading, to the nearest outline that parts two regions and heads the same way.
+        """How far (k,) it is from places, at a right angle to a heading, to the nearest outline that parts two regions and heads that way.
 
-        0 where there is none within reach.
+        0 where none is within reach.
         """
         result = np.zeros(len(places), np.complex128)
         if not len(places):
@@ -251,16 +251,15 @@ def smoothed(outlines: Outlines) -> Points:
         long = size > 6 * scale
         if not long.any():
             break
-        kernel = unshrinking(scale)
-        reach = len(kernel) // 2
-        line = Unrolled(outlines.indices, outlines.starts, rings, long, reach)
+        kernel, near = unshrinking(scale), int(np.ceil(2 * scale))
+        line = Unrolled(outlines.indices, outlines.starts, rings, long, len(kernel) // 2 + 2 * near)
         before = line.points(z)
         curve = convolve(before, kernel)
         slope = np.gradient(curve)
         sideways = np.abs(cross(curve - before, slope)) / np.maximum(np.abs(slope), 1e-12)
-        # All of it where nothing within twice the width strays; from there it fades, to nothing where something does.
-        fade = np.blackman(2 * reach + 1)
-        allowed = np.convolve(~widened(sideways > STRAYING, reach), fade / fade.sum(), "same")
+        # Nothing where something strays, all of it from four widths away on.
+        fade = np.blackman(2 * near + 1)
+        allowed = np.convolve(~widened(sideways > STRAYING, near), fade / fade.sum(), "same")
         own = line.own & (allowed > 1e-12)
         at = line.source[own]
         result[at] += allowed[own] * (curve[own] - result[at])

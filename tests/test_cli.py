@@ -533,3 +533,20 @@ def test_version(capsys):
         main(["--version"])
     assert stopped.value.code == 0
     assert re.fullmatch(r"img2tri \d+\.\d+\.\d+\n", capsys.readouterr().out)
+
+
+def test_view_report_writes_one_page_that_needs_nothing_else(tmp_path, capsys):
+    image, page = tmp_path / "disc.png", tmp_path / "disc.html"
+    Image.fromarray((specimens.disc() * 255).astype(np.uint8)).save(image)
+    assert main(["view-report", str(image), "-o", str(page), "--edge-length", "4"]) == 0
+    text = page.read_text(encoding="utf-8")
+    assert "http://" not in text
+    assert "https://" not in text
+    assert "--edge-length 4" in text
+    assert "saved" in capsys.readouterr().out
+
+
+def test_view_report_says_in_one_line_what_is_wrong(tmp_path, capsys):
+    assert main(["view-report", str(tmp_path / "missing.png"), "-o", str(tmp_path / "page.html")]) == 2
+    assert len(capsys.readouterr().err.splitlines()) == 1
+    assert not list(tmp_path.iterdir())

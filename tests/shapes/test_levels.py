@@ -168,11 +168,9 @@ def test_discs_are_found_to_a_thirtieth_of_a_pixel(radius, options):
     assert np.abs(smooth).max() <= 0.15
 
 
-@pytest.mark.parametrize(
-    "radius", [5, 8, pytest.param(12, marks=TOO_WIDE), 16, 20, pytest.param(30, marks=TOO_WIDE), pytest.param(40, marks=TOO_WIDE), 60, 80]
-)
+@pytest.mark.parametrize("radius", [3, 5, *(pytest.param(r, marks=TOO_WIDE) for r in (8, 10, 12)), 16, 25, pytest.param(30, marks=TOO_WIDE), 60, 80])
 def test_smoothing_never_makes_it_worse(radius):
-    smooth, raw = errors(radius)
+    smooth, raw = errors(radius, 12 if radius < 40 else 4)
     assert rms(smooth) <= rms(raw)
 
 
@@ -220,15 +218,15 @@ def test_thin_parts_survive_that_the_gray_values_hardly_show():
 
 # ---- edges that say no more than a mask ----
 
+BY_GRAY = pytest.mark.xfail(strict=True, reason='threshold="otsu" takes the gray values of two-valued images for more than a mask')
 
-@pytest.mark.parametrize("pair", [(0, 255), (10, 11), (0.0, 1.0), (-3.5, 2.25), (True, False)], ids=str)
-@pytest.mark.parametrize("how", ["left out", "given", "otsu"])
+
+@pytest.mark.parametrize("pair", [(0, 255), (10, 11), (0.0, 1.0), (-3.5, 2.25)], ids=str)
+@pytest.mark.parametrize("how", ["left out", "given", pytest.param("otsu", marks=BY_GRAY)])
 def test_an_image_of_two_values_is_its_mask(pair, how):
     mask = specimens.ellipse(40, (15.2, 9.1), 30, (20.3, 19.1)).astype(bool)
     image = np.where(mask, *pair[::-1])
-    level = {} if how == "left out" else {"threshold": float(sum(map(float, pair)) / 2) if how == "given" else "otsu"}
-    if pair == (True, False):
-        mask, level = ~mask, {}
+    level = {"left out": {}, "given": {"threshold": sum(pair) / 2}, "otsu": {"threshold": "otsu"}}[how]
     outlines, expected = outlines_of(image, **level)[0], outlines_of(mask)[0]
     assert np.array_equal(outlines.points, expected.points)
     assert np.array_equal(outlines.indices, expected.indices)
