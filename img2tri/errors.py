@@ -14,10 +14,13 @@ A message names the parameter, what was expected, what was found, and, where it 
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Sequence
-from typing import TypeVar
+from typing import SupportsFloat, SupportsIndex, TypeVar
 
 T = TypeVar("T", bound=str)
+
+SHOWN = 100  # letters of a value in a message
 
 
 class Img2triError(Exception):
@@ -57,12 +60,15 @@ def finite(name: str, value: object, *, above: float | None = None, least: float
     bounds += [f"of at most {most:g}"] if most is not None else []
     expected = " ".join(["a number", " and ".join(bounds)]).strip()
     try:
-        number = float(value) if not isinstance(value, (bool, str, bytes)) else math.nan  # type: ignore[arg-type]
+        # All that Python counts among numbers, numpy's and Decimal too; no bool, no text, which float() would take.
+        plain = getattr(value, "ndim", 0) == 0 and getattr(getattr(value, "dtype", None), "kind", "f") in "iuf"
+        known = plain and isinstance(value, (SupportsFloat, SupportsIndex)) and not _is_bool(value)
+        number = float(value) if known else math.nan  # type: ignore[arg-type]
     except (TypeError, ValueError, OverflowError):
         number = math.nan
     within = (above is None or number > above) and (least is None or number >= least) and (most is None or number <= most)
     if not (math.isfinite(number) and within):
-        raise ParameterError(f"{name}: expected {expected}, found {value!r}")
+        raise ParameterError(f"{name}: expected {expected}, found {shown(value)}")
     return number
 
 
@@ -74,10 +80,13 @@ def integer(name: str, value: object, *, least: int = 0) -> int:
     >>> integer("iterations", 10)
     10
     """
-    whole = hasattr(value, "__index__") and not isinstance(value, bool)
-    if not whole or int(value) < least:  # type: ignore[call-overload]
-        raise ParameterError(f"{name}: expected a whole number of at least {least}, found {value!r}")
-    return int(value)  # type: ignore[call-overload, no-any-return]
+    try:
+        number = None if _is_bool(value) else operator.index(value)  # type: ignore[arg-type]
+    except TypeError:
+        number = None
+    if number is None or number < least:
+        raise ParameterError(f"{name}: expected a whole number of at least {least}, found {shown(value)}")
+    return number
 
 
 def choice(name: str, value: T, options: Sequence[str]) -> T:
@@ -88,6 +97,42 @@ def choice(name: str, value: T, options: Sequence[str]) -> T:
     >>> choice("recipe", "conforming", ["conforming", "structured"])
     'conforming'
     """
-    if value not in options:
-        raise ParameterError(f"{name}: expected one of {', '.join(map(repr, options))}, found {value!r}")
+    if not isinstance(value, str) or value not in options:
+        raise ParameterError(f"{name}: expected one of {', '.join(map(repr, options))}, found {shown(value)}")
     return value
+
+
+def flag(name: str, value: object) -> bool:
+    """Return `value` if it is True or False, or say that it is neither: the words "no" and "False" would count as true.
+
+    Examples
+    --------
+    >>> flag("invert", "no")
+    Traceback (most recent call last):
+    ...
+    img2tri.errors.ParameterError: invert: expected True or False, found 'no'
+    """
+    if not _is_bool(value):
+        raise ParameterError(f"{name}: expected True or False, found {shown(value)}")
+    return bool(value)
+
+
+def shown(value: object) -> str:
+    """Return what a message says of a value: its repr, in one line of bearable length.
+
+    Examples
+    --------
+    >>> shown("8 px"), shown(10**5000), len(shown("x" * 1000))
+    ("'8 px'", 'int', 100)
+    """
+    try:
+        text = " ".join(repr(value).split())
+    except Exception:
+        # Integers of more than 4300 digits have none, nor have objects of all kinds.
+        return type(value).__name__
+    return text if len(text) <= SHOWN else text[: SHOWN - 4] + " ..."
+
+
+def _is_bool(value: object) -> bool:
+    # numpy's own, without the need to load numpy here.
+    return isinstance(value, bool) or type(value).__name__ in ("bool_", "bool")

@@ -7,6 +7,10 @@ NIfTI, known by their content or else by their suffix, are read in ``medical``.
 
 from __future__ import annotations
 
+import io
+import math
+import os
+import stat
 import struct
 import threading
 from collections.abc import Iterator
@@ -23,6 +27,7 @@ from img2tri.raster.pages import Decoded, check_page
 from img2tri.raster.tags import Size, exif, millimetres, orientation, pixel_size, upright
 
 BITS, SAMPLE_FORMAT = 258, 339  # tags of TIFF
+MOST_SAMPLES = 4  # red, green, blue and alpha
 ASSOCIATED = 1  # TIFF's word for colours multiplied by their alpha
 TIFF_STARTS = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
 DRAWINGS = ("EPS", "WMF")
@@ -34,6 +39,7 @@ PLAIN_MODES = ("1", "L", "P", "RGB", "RGBA", "I", "F", "I;16", "I;16B", "I;16L",
 CONVERTED_MODES = {"LA": "RGBA", "RGBa": "RGBA", "PA": "RGBA", "RGBX": "RGB", "CMYK": "RGB", "YCbCr": "RGB"}
 
 _limit_lock = threading.Lock()
+_limits: list[float] = []  # Pillow's own limit, then those in force at the moment
 
 
 def decode(path: Path, page: int, max_pixels: int) -> Decoded:
@@ -72,10 +78,16 @@ def decode(path: Path, page: int, max_pixels: int) -> Decoded:
         if start[:4] in TIFF_STARTS and not _pillow_reads_tiff(path, page):
             return _decode_tiff(path, page, max_pixels)
         return _decode(path, start, page, max_pixels)
-    except (Img2triError, MemoryError):
+    except Img2triError:
         raise
+    except MemoryError as error:
+        # Often only because of a length somewhere in a damaged file.
+        raise FileError(f"image: {str(path)!r} is damaged, or needs more memory than there is") from error
     except UnidentifiedImageError as error:
         raise FileError(f"image: {str(path)!r} is not an image in a known format") from error
+    except Image.DecompressionBombError as error:
+        # The file holds a larger image than its header claims.
+        raise ImageError(f"image: expected at most max_pixels={max_pixels} pixels, found more in {str(path)!r} ({error})") from error
     except Exception as error:
         # Decoders meet damaged data with errors of every type.
         raise FileError(f"image: {str(path)!r} is damaged or truncated ({error})") from error
@@ -83,11 +95,16 @@ def decode(path: Path, page: int, max_pixels: int) -> Decoded:
 
 def _start(path: Path) -> bytes:
     """Return the first bytes of a file, or say why there are none."""
-    if path.is_dir():
-        raise FileError(f"image: expected a file, found the folder {str(path)!r}")
     try:
+        mode = path.stat().st_mode
+        if not stat.S_ISREG(mode):
+            # A pipe without a writer would be waited for without end, and none of these can be read twice.
+            what = "folder" if stat.S_ISDIR(mode) else "pipe or device"
+            raise FileError(f"image: expected a file, found the {what} {str(path)!r}")
         with path.open("rb") as file:
             start = file.read(START)
+    except Img2triError:
+        raise
     except FileNotFoundError as error:
         raise FileError(f"image: there is no file {str(path)!r}") from error
     except (OSError, ValueError) as error:
@@ -107,25 +124,52 @@ def _medical(path: Path, start: bytes) -> str | None:
 
 
 @contextmanager
-def _opened(path: Path) -> Iterator[Image.Image]:
-    """Open a file with Pillow, whose own limit of pixels, a global one, is set aside for that moment: `max_pixels` is ours.
+def _limit(pixels: float) -> Iterator[None]:
+    """Set Pillow's limit of pixels, a global one that TIFF and GIF ask for while they decode, to ours if that is greater.
+
+    Where several threads decode, the greatest limit holds until the last of them is done.
+    """
+    with _limit_lock:
+        if not _limits:
+            _limits.append(Image.MAX_IMAGE_PIXELS or math.inf)
+        _limits.append(pixels)
+        Image.MAX_IMAGE_PIXELS = max(_limits)  # type: ignore[assignment]
+    try:
+        yield
+    finally:
+        with _limit_lock:
+            _limits.remove(pixels)
+            Image.MAX_IMAGE_PIXELS = max(_limits)  # type: ignore[assignment]
+            if len(_limits) == 1:
+                usual = _limits.pop()
+                Image.MAX_IMAGE_PIXELS = None if usual == math.inf else int(usual)
+
+
+class _File(io.BufferedReader):
+    """A file that is never asked for more bytes than it has: a damaged length would make room for gigabytes first."""
+
+    def read(self, size: int | None = -1, /) -> bytes:
+        """Read `size` bytes, or what there is."""
+        if size is None or size < 0:
+            return super().read()
+        return super().read(min(size, max(0, os.fstat(self.fileno()).st_size - self.tell())))
+
+
+@contextmanager
+def _opened(path: Path, max_pixels: float = math.inf) -> Iterator[Image.Image]:
+    """Open a file with Pillow, whatever size it claims; what is decoded may have `max_pixels`.
 
     Pillow is not given the path, as it would map the file into memory, and scrambles turned TIFFs when it does (13.0).
     """
-    with path.open("rb") as file:
-        with _limit_lock:
-            limit = Image.MAX_IMAGE_PIXELS
-            Image.MAX_IMAGE_PIXELS = None
-            try:
-                img = Image.open(file)
-            finally:
-                Image.MAX_IMAGE_PIXELS = limit
-        with img:
+    with _File(path.open("rb", buffering=0)) as file:
+        with _limit(math.inf):
+            img = Image.open(file)
+        with img, _limit(max_pixels):
             yield img
 
 
 def _decode(path: Path, start: bytes, page: int, max_pixels: int) -> Decoded:
-    with _opened(path) as img:
+    with _opened(path, max_pixels) as img:
         kind = str(img.format)
         if kind in DRAWINGS:
             raise FileError(f"image: {str(path)!r} is a drawing ({kind}), not pixels; convert it to PNG first")
@@ -231,7 +275,11 @@ def _decode_tiff(path: Path, page: int, max_pixels: int) -> Decoded:
     with tifffile.TiffFile(path) as file:
         pages = len(file.pages)
         sheet = file.pages[min(page, pages - 1)].aspage()
-        notes = {"format": "TIFF"} | check_page(path, page, pages, sheet.imagewidth, sheet.imagelength, max_pixels)
+        # A volume counts with all its layers.
+        high = sheet.imagelength * sheet.imagedepth
+        notes = {"format": "TIFF"} | check_page(path, page, pages, sheet.imagewidth, high, max_pixels)
+        if sheet.samplesperpixel > MOST_SAMPLES:
+            raise ImageError(f"image: expected at most {MOST_SAMPLES} values per pixel, found {sheet.samplesperpixel} in {str(path)!r}")
         values = np.asarray(sheet.asarray())
         tags = {tag.code: tag.value for tag in sheet.tags}
         colormap, multiplied = sheet.colormap, tuple(sheet.extrasamples) == (ASSOCIATED,)
