@@ -66,9 +66,6 @@ def main(argv: Sequence[str] | None = None) -> int:
         return DONE
 
 
-# ---- meshing ----
-
-
 @dataclass(frozen=True)
 class _Job:
     """One image, and the files to be made of it."""
@@ -161,10 +158,11 @@ def _view_report(arguments: Namespace, typed: Sequence[str]) -> int:
 
 def _jobs(arguments: Namespace) -> list[_Job]:
     """Name the files of every image; see that each can be written, and that none is there twice or an image itself."""
-    from img2tri.views.files import FORMATS
+    from img2tri.views import export, files, vectors
     from img2tri.views.storing import writable
 
-    wanted: list[tuple[str, str, Collection[str]]] = [("-o", name, FORMATS) for name in arguments.outputs]
+    formats = {**files.FORMATS, **export.EXPORTS, **vectors.FORMATS}
+    wanted: list[tuple[str, str, Collection[str]]] = [("-o", name, formats) for name in arguments.outputs]
     if arguments.plot:
         from img2tri.views.figure import SUFFIXES
 

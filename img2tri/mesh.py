@@ -7,8 +7,10 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from img2tri import __version__
 from img2tri.errors import MeshError, ParameterError, choice
 from img2tri.records import Floats, Frame, Ints, Origin
 from img2tri.triangles.checks import check_mesh, check_regions
@@ -21,6 +23,8 @@ if TYPE_CHECKING:
 
     from img2tri.report import Report
     from img2tri.triangles.quality import Quality
+    from img2tri.views.cells import Cells
+    from img2tri.views.sets import Sets
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -135,7 +139,7 @@ class TriangleMesh:
             choice("boundary", boundary, ("fixed",))
             moved = uniform(self.vertices, self.triangles, iterations=iterations, regions=self.regions, guard=guard)
         else:
-            bounds = self.frame.bounds if self.origin else None
+            bounds = self._bounds()
             moved = cotangent(
                 self.vertices, self.triangles, iterations=iterations, boundary=boundary, tolerance=within,
                 bounds=bounds, regions=self.regions, guard=guard,
@@ -178,15 +182,57 @@ class TriangleMesh:
 
         return to_pyvista(self.vertices, self.triangles, self.regions, height=height, **self._data())
 
-    def save(self, path: str | os.PathLike[str], height: float | None = None) -> None:
-        """Write the mesh in the format the suffix names: .stl, .ply, .obj, .off, .3mf, .glb, .vtp or .vtu.
+    def sets(self) -> Sets:
+        """Name the parts of the mesh: regions, sides of the frame, outer boundary, holes, interfaces ``A__B``."""
+        from img2tri.views.sets import named_sets
 
-        With `height` (world units), the closed solid from z = 0 to z = height. An older file is replaced in one step, or left as it
-        is if anything goes wrong.
+        return named_sets(self.vertices, self.triangles, self.regions, bounds=self._bounds(), names=self.names)
+
+    def save(
+        self,
+        path: str | os.PathLike[str],
+        height: float | None = None,
+        *,
+        layers: int | None = None,
+        order: int = 1,
+        version: str | None = None,
+        deck: bool | None = None,
+        plane: str | None = None,
+    ) -> None:
+        """Write the mesh in the format the suffix names. An older file is replaced in one step, or left as it is.
+
+        Parameters
+        ----------
+        path
+            For printing and looking at: .stl, .ply, .obj, .off, .3mf, .glb, .vtp, .vtu. For solvers, with named sets: .msh, .inp,
+            .bdf, .xdmf, .vtu, .vtkhdf. The outlines of the image: .svg, .dxf, .geojson.
+        height
+            World units: write a solid from z = 0 to there, closed surfaces for printing, wedges for solvers.
+        layers, order
+            For solvers: layers of wedges; 2 for quadratic elements.
+        version, deck, plane
+            Of .msh, "4.1" or "2.2"; of .inp, whether an analysis that runs is written, in plane "stress" or "strain".
         """
+        from img2tri.views import vectors
+        from img2tri.views.export import EXPORTS, export
         from img2tri.views.files import save
 
-        save(path, self.vertices, self.triangles, self.regions, height=height, **self._data())
+        suffix = Path(path).suffix.lower()
+        if suffix in vectors.FORMATS:
+            if height is not None:
+                raise ParameterError(f"height: expected None for {suffix}, which is a drawing, found {height!r}")
+            texts = self._data()["field_data"]
+            vectors.save_outlines(
+                path, self.outlines(), names=self.names, bounds=self._bounds(), upward=self.frame.upward, field_data=texts
+            )  # fmt: skip
+        elif suffix in EXPORTS and not (suffix == ".vtu" and height is not None and layers is None):
+            export(path, self._cells(height, layers or 1, order), version=version, deck=deck, plane=plane)
+        else:
+            given = {"layers": layers, "version": version, "deck": deck, "plane": plane, "order": None if order == 1 else order}
+            for name, value in given.items():
+                if value is not None:
+                    raise ParameterError(f"{name}: expected to be left out for {suffix}, found {value!r}; it is for {', '.join(EXPORTS)}")
+            save(path, self.vertices, self.triangles, self.regions, height=height, names=self.names, **self._data())
 
     def plot(self, image: Any = None, path: str | os.PathLike[str] | None = None, *, colour_by: str | None = "quality") -> Figure:
         """Draw the mesh over its image, with a histogram of its quality beside it.
@@ -212,9 +258,32 @@ class TriangleMesh:
             image=values, colour_by=colour_by, path=path,
         )  # fmt: skip
 
+    def _cells(self, height: float | None, layers: int, order: int) -> Cells:
+        """Return the elements solvers compute on, with their named sets."""
+        from img2tri.views.cells import flat_cells, solid_cells
+        from img2tri.views.wedges import quadratic, wedges
+
+        if order not in (1, 2):
+            raise ParameterError(f"order: expected 1 or 2, found {order!r}")
+        nodes, elements = (self.vertices, self.triangles) if order == 1 else quadratic(self.vertices, self.triangles)
+        flat = flat_cells(nodes, elements, self.regions, names=self.names, bounds=self._bounds(), **self._data())
+        if height is None:
+            return flat
+        points, cells, _ = wedges(self.vertices, self.triangles, height=height, layers=layers, order=order, z=self.frame.z)
+        return solid_cells(flat, points, cells)
+
+    def _bounds(self) -> tuple[float, float, float, float] | None:
+        """Return the frame of the image, if the mesh has one."""
+        return self.frame.bounds if self.frame.shape != (1, 1) or self.origin else None
+
     def _data(self) -> dict[str, Any]:
         """Collect what objects and files carry along: the height of the plane, q of each triangle, how the mesh was made."""
         from img2tri.triangles.quality import measure
 
-        texts = {} if self.origin is None else {"img2tri": json.dumps({"recipe": self.origin.recipe, **self.origin.settings}, default=str)}
+        about: dict[str, Any] = {"version": __version__, "names": {str(label): name for label, name in self.names.items()}}
+        if self.origin is not None:
+            f = self.frame
+            about |= {"recipe": self.origin.recipe, **self.origin.settings, "names": about["names"]}
+            about["frame"] = {"shape": f.shape, "spacing": f.spacing, "corner": f.corner, "upward": f.upward}
+        texts = {"img2tri": json.dumps(about, default=str)}
         return {"z": self.frame.z, "cell_data": measure(self.vertices, self.triangles, ["q"]), "field_data": texts}

@@ -120,7 +120,7 @@ def _parser() -> ArgumentParser:
     quality = commands.add_parser(
         "quality", help="judge meshes", description=QUALITY, formatter_class=_formatter, allow_abbrev=False
     )
-    quality.add_argument("meshes", nargs="+", metavar="MESH", help=".stl, .ply, .obj, .off, .glb, .vtp or .vtu")
+    quality.add_argument("meshes", nargs="+", metavar="MESH", help=".stl, .ply, .obj, .off, .glb, .vtp, .vtu, .msh or .bdf")
     return parser
 
 
@@ -134,7 +134,10 @@ def _add_files(parser: ArgumentParser) -> None:
 
     about = "With several images, names hold {stem}, which becomes the name of the image without folder and suffix."
     add = parser.add_argument_group("files to write", about).add_argument
-    formats = ".stl, .ply, .obj, .off, .3mf, .glb, .vtp or .vtu; may be given several times"
+    formats = (
+        "to print or look at: .stl .ply .obj .off .3mf .glb .vtp .vtu; for solvers: .msh .inp .bdf .xdmf .vtkhdf; outlines: .svg .dxf "
+        ".geojson; may be given several times"
+    )
     add("-o", "--output", dest="outputs", action="append", default=[], metavar="MESH", help=formats)
     add("--height", type=_number, metavar="H", help="world units: write the closed solid from z = 0 to H, for printing; else flat")
     add("--plot", metavar="FIGURE", help=".png, .svg or .pdf: the mesh over its image, and a histogram")

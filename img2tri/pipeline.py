@@ -15,6 +15,7 @@ from img2tri.mesh import TriangleMesh
 from img2tri.paper import paper_mesh
 from img2tri.raster.binarizing import Level
 from img2tri.raster.cropping import crop as cropped
+from img2tri.raster.hashing import image_hash
 from img2tri.raster.reading import read
 from img2tri.raster.zones import Zones, cleaned, find_zones
 from img2tri.records import Floats, Origin, Outlines, checked_names
@@ -251,6 +252,7 @@ def mesh_image(
         "seed": seed,
         "names": names,
         "source": picture.source,
+        "image_sha256": image_hash(picture.values),
         **paper,
     }
     mesh = TriangleMesh(

@@ -63,7 +63,7 @@ def _one_child(function, path, start, end, seconds, memory, start_up):
             reader.start()
         outcomes: list[Outcome] = []
         lost = None
-        wait = start_up
+        ready, wait = False, start_up
         while start + len(outcomes) < end:
             try:
                 line = lines.get(timeout=wait)
@@ -71,7 +71,7 @@ def _one_child(function, path, start, end, seconds, memory, start_up):
                 lost = Outcome("hung", f"after {wait:g} s")
                 break
             if line == b"ready\n":
-                wait = seconds
+                ready, wait = True, seconds
                 continue
             if not line:
                 child.wait()
@@ -81,7 +81,7 @@ def _one_child(function, path, start, end, seconds, memory, start_up):
         child.kill()
         for reader in readers:
             reader.join()
-    if wait == start_up:
+    if not ready:
         raise RuntimeError(f"the child did not start: {errors}")
     if lost is not None:
         tail = errors[0].decode(errors="replace").strip()[-300:]

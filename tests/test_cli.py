@@ -20,7 +20,9 @@ from PIL import Image
 
 from img2tri import cli, mesh_image, options, pipeline
 from img2tri.cli import main
+from img2tri.views.export import EXPORTS
 from img2tri.views.files import FORMATS, load
+from img2tri.views.vectors import FORMATS as DRAWINGS
 
 # Each option of `img2tri mesh` that goes to mesh_image, as typed and as it must arrive.
 ARRIVE = {
@@ -161,9 +163,9 @@ def test_help_lists_the_formats(capsys):
     for command in ("mesh", "quality"):
         with pytest.raises(SystemExit):
             main([command, "--help"])
-        text = " ".join(capsys.readouterr().out.split())
-        listed.append(set(re.findall(r"\.\w+", re.search(r"\.stl, .*? or (\.\w+)", text)[0])))
-    assert listed == [set(FORMATS), {suffix for suffix, form in FORMATS.items() if form.read}]
+        listed.append(set(re.findall(r"(?<![\w.])\.[a-z0-9]+", capsys.readouterr().out)))
+    assert listed[0] >= {*FORMATS, *EXPORTS, *DRAWINGS}
+    assert listed[1] == {suffix for suffix, form in FORMATS.items() if form.read} | {".msh", ".bdf"}
 
 
 def test_labels_before_the_image_does_not_swallow_it(arrived, disc):
@@ -400,7 +402,7 @@ BAD_INPUT = {
     "label not there": (["DISC", "--labels", "9"], "--labels: expected values of the image, found 9"),
     "label is background": (["DISC", "--labels", "0,255"], "give --background none"),
     "height": (["DISC", "--height", "0"], "--height: expected a number above 0, found 0"),
-    "suffix": (["DISC", "-o", "a.dwg"], "a.dwg: expected a name that ends in .3mf, .glb"),
+    "suffix": (["DISC", "-o", "a.dwg"], "a.dwg: expected a name that ends in .3mf, .bdf"),
     "suffix of the figure": (["DISC", "--plot", "a.stl"], "a.stl: expected a name that ends in .pdf, .png or .svg"),
     "suffix of the report": (["DISC", "--report", "a.txt"], "a.txt: expected a name that ends in .json"),
     "no folder": (["DISC", "-o", "none/a.stl"], "none/a.stl: expected an existing folder"),

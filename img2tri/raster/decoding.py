@@ -23,12 +23,11 @@ from PIL import Image, UnidentifiedImageError
 
 from img2tri.errors import FileError, ImageError, Img2triError
 from img2tri.raster.checking import Pixels
-from img2tri.raster.pages import Decoded, check_page
-from img2tri.raster.tags import Size, exif, millimetres, orientation, pixel_size, upright
+from img2tri.raster.pages import Decoded, check_page, turned
+from img2tri.raster.tags import exif, orientation, pixel_size, upright
+from img2tri.raster.tiff import decode_tiff
 
 BITS, SAMPLE_FORMAT = 258, 339  # tags of TIFF
-MOST_SAMPLES = 4  # red, green, blue and alpha
-ASSOCIATED = 1  # TIFF's word for colours multiplied by their alpha
 TIFF_STARTS = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
 DRAWINGS = ("EPS", "WMF")
 MEDICAL = {".dcm": "DICOM", ".dicom": "DICOM", ".nii": "NIfTI", ".nii.gz": "NIfTI"}
@@ -76,7 +75,7 @@ def decode(path: Path, page: int, max_pixels: int) -> Decoded:
 
             return (decode_dicom if kind == "DICOM" else decode_nifti)(path, page, max_pixels)
         if start[:4] in TIFF_STARTS and not _pillow_reads_tiff(path, page):
-            return _decode_tiff(path, page, max_pixels)
+            return decode_tiff(path, page, max_pixels)
         return _decode(path, start, page, max_pixels)
     except Img2triError:
         raise
@@ -185,14 +184,7 @@ def _decode(path: Path, start: bytes, page: int, max_pixels: int) -> Decoded:
         if palette is not None:
             notes["palette"] = palette
     # Pillow turns TIFFs itself while loading.
-    return _turned(values if kind == "TIFF" else upright(values, turn), turn, notes, size)
-
-
-def _turned(values: Pixels, turn: int, notes: dict[str, Any], size: Size | None) -> Decoded:
-    """Note that an image was turned, and turn the size of its pixels."""
-    if turn > 1:
-        notes = notes | {"orientation": turn}
-    return values, notes, size[::-1] if size is not None and turn >= 5 else size
+    return turned(values if kind == "TIFF" else upright(values, turn), turn, notes, size)
 
 
 def _values(img: Image.Image) -> tuple[Pixels, Pixels | None]:
@@ -264,41 +256,3 @@ def _pillow_reads_tiff(path: Path, page: int) -> bool:
             return (max(bits) <= 8 and kinds == {1}) or (max(bits) <= 32 and img.mode in wide)
     except (OSError, SyntaxError, ValueError, KeyError, struct.error):
         return False
-
-
-def _decode_tiff(path: Path, page: int, max_pixels: int) -> Decoded:
-    """Decode a TIFF of a type Pillow has no mode for: int64, float64, int8, colours of 16 bit."""
-    try:
-        import tifffile
-    except ImportError as error:
-        raise FileError(f"image: {str(path)!r} is a TIFF only tifffile can read; install it with  pip install 'img2tri[tiff]'") from error
-    with tifffile.TiffFile(path) as file:
-        pages = len(file.pages)
-        sheet = file.pages[min(page, pages - 1)].aspage()
-        # A volume counts with all its layers.
-        high = sheet.imagelength * sheet.imagedepth
-        notes = {"format": "TIFF"} | check_page(path, page, pages, sheet.imagewidth, high, max_pixels)
-        if sheet.samplesperpixel > MOST_SAMPLES:
-            raise ImageError(f"image: expected at most {MOST_SAMPLES} values per pixel, found {sheet.samplesperpixel} in {str(path)!r}")
-        values = np.asarray(sheet.asarray())
-        tags = {tag.code: tag.value for tag in sheet.tags}
-        colormap, multiplied = sheet.colormap, tuple(sheet.extrasamples) == (ASSOCIATED,)
-        if sheet.axes == "SYX":
-            values = np.moveaxis(values, 0, 2)
-    if values.ndim == 3 and values.shape[2] == 2:  # gray and alpha
-        values = values[..., [0, 0, 0, 1]]
-    if multiplied and values.shape[2:] == (4,):
-        values = _divided(values)
-    if colormap is not None:
-        notes["palette"] = (np.asarray(colormap).T >> 8).astype(np.uint8)
-    turn = orientation(tags)
-    return _turned(upright(values, turn), turn, notes, millimetres(tags))
-
-
-def _divided(values: Pixels) -> Pixels:
-    """Divide colours by the alpha they were multiplied with; where that is 0 they are black."""
-    colours, alpha = values[..., :3], values[..., 3:].astype(np.float64)
-    whole = values.dtype.kind in "iu"
-    full = float(np.iinfo(values.dtype).max) if whole else 1.0
-    colours = np.minimum(full, np.divide(colours * full, alpha, out=np.zeros(colours.shape), where=alpha > 0))
-    return np.dstack([np.rint(colours) if whole else colours, alpha]).astype(values.dtype)

@@ -23,3 +23,10 @@ def check_page(path: Path, page: int, pages: int, width: int, height: int, max_p
             "raise max_pixels if the file can be trusted"
         )
     return {"pages": pages, "page": page} if pages > 1 else {}
+
+
+def turned(values: Pixels, turn: int, notes: dict[str, Any], size: Size | None) -> Decoded:
+    """Note that an image was turned, and turn the size of its pixels."""
+    if turn > 1:
+        notes = notes | {"orientation": turn}
+    return values, notes, size[::-1] if size is not None and turn >= 5 else size

@@ -15,9 +15,8 @@ agree. That ends, as divisions only get finer.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,10 +30,8 @@ from img2tri.shapes.links import Links
 DIRECTIONS = {None: (), "x": (0,), "y": (1,), "xy": (0, 1)}  # which coordinate tells a side from the one opposite to it
 SIDES = {"x": (1, "column"), "y": (0, "row")}
 PICKS = 4  # rounds of settling in which the finer of two divisions is taken; after these both, which surely ends
-FILLINGS = 12  # how often a network is filled until both sides agree; two or three times are usual
+FILLINGS = 12  # how often a network is filled at most until both sides agree
 NEAR = 1e-9  # of the size of the image: what lies so near to a side lies on it
-
-T = TypeVar("T", bound=tuple[Any, ...])
 
 
 def check_sides(labels: NDArray[Any], periodic: str | None) -> None:
@@ -134,31 +131,41 @@ class Twins:
             measured[entries] = tested[entries] = -1
         return replace(d, breaks=breaks, moved=moved, reset=back, measured=measured, tested=tested)
 
-    def fill(self, chains: Outlines, fill: Callable[[Outlines], T]) -> T:
-        """Fill a network, its first result being vertices (n, 2), until these lie at the same places on opposite sides.
+    def divided(self, chains: Outlines, vertices: Floats) -> Outlines:
+        """Divide two sides alike, after filling divided them differently.
 
-        Raises
-        ------
-        MeshError
-            If it goes on dividing them differently.
+        Parameters
+        ----------
+        chains
+            The coarse outlines that were filled.
+        vertices
+            (n, 2) float64, the vertices of the mesh.
+
+        Returns
+        -------
+        Outlines
+            `chains` itself if both sides have their vertices at the same places; else with those that only one has.
         """
-        for _ in range(FILLINGS if self.walls else 1):
-            made = fill(chains)
-            missing = [self._missing(chains.points, made[0], *wall) for wall in self.walls]
-            if not any(len(places) for places in missing):
-                return made
-            for wall, places in zip(self.walls, missing, strict=True):
-                chains = _divided(chains, places, *wall)
-        raise MeshError(f"periodic: expected opposite sides divided alike after {FILLINGS} rounds, found that they are not; try another edge_length=")
+        result = chains
+        for wall in self.walls:
+            places = self._missing(chains.points, vertices, *wall)
+            if len(places):
+                result = _divided(result, places, *wall)
+        return result
 
     @staticmethod
     def _missing(points: Floats, vertices: Floats, axis: int, low: float, high: float) -> Floats:
-        """Places along a side (k,) at which filling divided it: between two points that were given, those of the side that has more."""
+        """Places along a side (k,) at which filling divided it: between two points that were given, those of the side that has more.
+
+        None if both sides were divided alike.
+        """
         given = np.sort(points[points[:, axis] == low, 1 - axis])
         new = []
         for wall in (low, high):
             places = vertices[np.abs(vertices[:, axis] - wall) < NEAR * (high - low), 1 - axis]
             new.append(np.setdiff1d(places, given))
+        if np.array_equal(new[0], new[1]):
+            return np.zeros(0)
         at = [np.searchsorted(given, places) for places in new]
         count = [np.bincount(where, minlength=len(given) + 1) for where in at]
         finer = count[1] > count[0]
