@@ -72,8 +72,8 @@ def finite(name: str, value: object, *, above: float | None = None, least: float
     return number
 
 
-def integer(name: str, value: object, *, least: int = 0) -> int:
-    """Return `value` as an int, or say that it is not a whole number of at least `least`.
+def integer(name: str, value: object, *, least: int = 0, most: int | None = None) -> int:
+    """Return `value` as an int, or say that it is not a whole number from `least` to `most`.
 
     Examples
     --------
@@ -86,6 +86,8 @@ def integer(name: str, value: object, *, least: int = 0) -> int:
         number = None
     if number is None or number < least:
         raise ParameterError(f"{name}: expected a whole number of at least {least}, found {shown(value)}")
+    if most is not None and number > most:
+        raise ParameterError(f"{name}: expected a whole number of at most {most}, found {shown(value)}")
     return number
 
 

@@ -6,16 +6,17 @@ image -> labels -> outlines -> points -> triangles -> mesh
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, TypedDict, Unpack
 
 from img2tri.conforming import conform, trace_outlines, wanted_sizes
-from img2tri.errors import ImageError, ParameterError, choice, finite, integer
+from img2tri.errors import ImageError, ParameterError, choice, finite, flag, integer, shown
 from img2tri.mesh import TriangleMesh
 from img2tri.paper import paper_mesh
 from img2tri.raster.binarizing import Level
 from img2tri.raster.cropping import crop as cropped
 from img2tri.raster.hashing import image_hash
+from img2tri.raster.labelling import label, picked
 from img2tri.raster.reading import read
 from img2tri.raster.zones import Zones, cleaned, find_zones
 from img2tri.records import Floats, Origin, Outlines, checked_names
@@ -25,6 +26,7 @@ from img2tri.shapes.polygons import enclosed_areas
 
 RECIPES = ("conforming", "structured", "unstructured")
 SMOOTHINGS = ("none", "uniform", "cotangent")
+MOST_PASSES = 100_000
 PAPER_THRESHOLD = 240
 PAPER_STEP = "10px"
 PAPER_SMOOTHING = {"structured": "none", "unstructured": "uniform"}
@@ -171,18 +173,17 @@ def mesh_image(
     tell = progress or _silent
     choice("recipe", recipe, RECIPES)
     names = checked_names(names)
-    labels = list(labels) if isinstance(labels, Iterator) else labels  # looked at twice
-    if background is not None and (isinstance(background, bool) or not hasattr(background, "__index__")):
-        raise ParameterError(f"background: expected an integer or None, found {background!r}")
+    labels = labels if labels is None or isinstance(labels, bool) else picked(labels)
+    background = None if background is None else label("background", background)
     choice("outline", outline, ("smooth", "pixel"))
     choice("corners", corners, ("auto", "keep", "round"))
-    choice("smoothing", smoothing or "none", SMOOTHINGS)
-    integer("iterations", iterations)
-    integer("seed", seed)
-    finite("min_angle", min_angle, least=0, most=33)
+    smoothing = None if smoothing is None else choice("smoothing", smoothing, SMOOTHINGS)
+    invert, keep_area, largest = flag("invert", invert), flag("keep_area", keep_area), flag("largest", largest)
+    iterations, seed = integer("iterations", iterations, most=MOST_PASSES), integer("seed", seed, most=2**64 - 1)
+    min_angle = finite("min_angle", min_angle, least=0, most=33)
     _check_paper_options(recipe, paper)
-    if connectivity not in (4, 8):
-        raise ParameterError(f"connectivity: expected 4 or 8, found {connectivity!r}")
+    if not isinstance(connectivity, int) or connectivity not in (4, 8):
+        raise ParameterError(f"connectivity: expected 4 or 8, found {shown(connectivity)}")
 
     tell("reading", 0.0)
     picture = cropped(read(image, spacing=spacing, origin=origin, page=page, max_pixels=max_pixels), crop)
@@ -199,9 +200,9 @@ def mesh_image(
     outlines, links = trace_outlines(zones, frame, connectivity=connectivity, corners=corners, outline=outline)
     if len(outlines.labels) == 1:
         raise ImageError(f"image: expected pixels to mesh, found none{_advice(zones.threshold)}")
-    for label in names:
-        if label not in outlines.labels[1:]:
-            raise ParameterError(f"names: expected labels of the image, found {label}; it has {outlines.labels[1:21].tolist()}")
+    for named in names:
+        if named not in outlines.labels[1:]:
+            raise ParameterError(f"names: expected labels of the image, found {named}; it has {outlines.labels[1:21].tolist()}")
 
     tell("points", 0.3)
     within = frame.length("tolerance", tolerance) / frame.pixel
@@ -228,7 +229,7 @@ def mesh_image(
     settings = {
         "threshold": zones.threshold.value if zones.threshold else None,
         "threshold_from": zones.threshold.how if zones.threshold else None,
-        "labels": labels if labels is None or isinstance(labels, bool) else sorted(labels),
+        "labels": labels,
         "background": zones.background,
         "invert": invert,
         "connectivity": connectivity,

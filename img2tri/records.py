@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from img2tri.errors import ParameterError, finite
+from img2tri.errors import ParameterError, finite, shown
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -143,7 +143,7 @@ def checked_names(names: Mapping[int, str] | None) -> dict[int, str]:
     if names is None:
         return {}
     if not isinstance(names, Mapping):
-        raise ParameterError(f"names: expected names by label, like {{1: 'bone'}}, found {names!r}")
+        raise ParameterError(f"names: expected names by label, like {{1: 'bone'}}, found {shown(names)}")
     for label, name in names.items():
         if isinstance(label, bool) or not hasattr(label, "__index__") or not (isinstance(name, str) and name):
             raise ParameterError(f"names: expected whole numbers with names, like {{1: 'bone'}}, found {label!r}: {name!r}")

@@ -171,7 +171,8 @@ def _warnings(facts: dict[str, Any]) -> list[str]:
 
 def _plain(value: Any) -> Any:
     """Turn what JSON does not know into what it does: numpy numbers into plain ones, all else into words."""
-    return value.item() if isinstance(value, np.generic) else str(value)
+    plain = value.item() if isinstance(value, np.generic) else str(value)
+    return float(plain) if isinstance(plain, np.generic) else plain  # numpy's long double has no plain form
 
 
 def _place(xy: Floats) -> tuple[float, float]:

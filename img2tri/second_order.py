@@ -29,7 +29,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from img2tri.records import Bools, Floats, Frame, Ints, Outlines
+from img2tri.records import Bools, Floats, Frame, Ints, Origin, Outlines
 from img2tri.shapes.unrolling import Points, Unrolled, convolve, cross, unshrinking, widened
 from img2tri.triangles.topology import directed_edges, unique_edges
 
@@ -60,9 +60,7 @@ class SecondOrder:
     regions: Ints
 
 
-def second_order(
-    vertices: Floats, triangles: Ints, regions: Ints, frame: Frame, outlines: Outlines | None = None, *, tolerance: float = 0.5
-) -> SecondOrder:
+def second_order(vertices: Floats, triangles: Ints, regions: Ints, frame: Frame, origin: Origin | None = None) -> SecondOrder:
     """Give a mesh nodes in the middle of its edges, and curved sides along its outlines.
 
     Guarantees: the Jacobian of every element is positive everywhere, at least `LEAST` times that of the straight triangle. Where a curved
@@ -75,10 +73,9 @@ def second_order(
         (n, 2) float64 in world units; (m, 3) int64, counter-clockwise; (m,) int64, labels.
     frame
         Where the image lies.
-    outlines
-        The dense outlines, in the plane of the frame. None leaves all sides straight.
-    tolerance
-        How far the mesh may be from them, in px. Where it is farther than this and `REACH`, sides stay straight.
+    origin
+        How the mesh was made: sides follow its outlines, unless they are farther away than its tolerance and `REACH`. Without an origin, or
+        if its recipe promises no tolerance, all sides are straight.
 
     Examples
     --------
@@ -91,12 +88,12 @@ def second_order(
     elements = np.concatenate([triangles, len(vertices) + inverse.reshape(-1, 3)[:, [2, 0, 1]]], axis=1)
     middles = (vertices[edges[:, 0]] + vertices[edges[:, 1]]) / 2
     straight = np.concatenate([vertices, middles])
-    if outlines is None or not len(outlines.left):
+    if origin is None or origin.tolerance is None:
         return SecondOrder(straight, elements, regions)
     flat = (vertices - frame.corner) / frame.pixel
     z = flat[:, 0] + 1j * flat[:, 1]
-    sides = _curved_sides(vertices, triangles, regions, frame, outlines, edges, inverse)
-    curved = _bent(z, edges, elements, sides, _Curves(outlines, tolerance + REACH))
+    sides = _curved_sides(vertices, triangles, regions, frame, origin.outlines, edges, inverse)
+    curved = _bent(z, edges, elements, sides, _Curves(origin.outlines, origin.tolerance + REACH))
     nodes = frame.world(np.stack([curved.real, curved.imag], axis=1))
     # What did not move is where it was to the last bit.
     kept = curved == np.concatenate([z, (z[edges[:, 0]] + z[edges[:, 1]]) / 2])

@@ -16,7 +16,7 @@ from typing import Any, TypedDict
 import numpy as np
 from numpy.typing import NDArray
 
-from img2tri.errors import ParameterError, finite
+from img2tri.errors import ParameterError, finite, shown
 from img2tri.raster.components import Components, connected, find_components, joined
 from img2tri.raster.labelling import LabelMap
 from img2tri.records import Bools, Ints
@@ -87,7 +87,7 @@ def clean(
     """
     limit = 0.0 if min_area is None else finite("min_area", min_area, least=0) * (1 - ROUNDING)
     if connectivity not in (4, 8):
-        raise ParameterError(f"connectivity: expected 4 or 8, found {connectivity!r}")
+        raise ParameterError(f"connectivity: expected 4 or 8, found {shown(connectivity)}")
     values, removed = labels.values, Removed(specks=0, holes=0, pixels=0, listed=[])
     steps = [limit] * (limit > 1) + [None] * bool(largest)
     changed = True

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from img2tri.errors import ParameterError, finite
+from img2tri.errors import ParameterError, finite, shown
 from img2tri.records import Picture
 
 ROUNDING = 1e-6  # px: a side this close to a side of pixels is meant to lie on it
@@ -74,8 +74,8 @@ def crop(picture: Picture, box: Sequence[float] | None) -> Picture:
 
 
 def _numbers(box: Sequence[float]) -> tuple[float, float, float, float]:
-    if isinstance(box, (str, bytes)) or not hasattr(box, "__len__") or len(box) != 4:
-        raise ParameterError(f"crop: expected four numbers (left, bottom, right, top), found {box!r}")
+    if isinstance(box, (str, bytes)) or getattr(box, "ndim", 1) != 1 or not hasattr(box, "__len__") or len(box) != 4:
+        raise ParameterError(f"crop: expected four numbers (left, bottom, right, top), found {shown(box)}")
     left, bottom, right, top = (finite("crop", number) for number in box)
     return left, bottom, right, top
 

@@ -7,18 +7,20 @@ one look at each: labels are compared, never sorted.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from itertools import islice
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from img2tri.errors import ImageError, ParameterError
+from img2tri.errors import ImageError, ParameterError, integer, shown
 from img2tri.raster.checking import Pixels, pixels
 from img2tri.raster.gray import alpha_is_the_picture
 
 SHOWN = 20  # labels listed in a message
+MOST_LABELS = 2**24  # in a list
 EXACT = 2.0**53  # whole numbers up to here are exact as float64
 
 
@@ -77,9 +79,7 @@ def label_map(values: object, *, labels: bool | Iterable[int] | None = True, bac
     LabelMap(values=array([[0, 1], [1, 3]]), background=1)
     """
     numbers = _whole(pixels(values))
-    if background is not None and not _is_integer(background):
-        raise ParameterError(f"background: expected an integer or None, found {background!r}")
-    background = None if background is None else int(background)
+    background = None if background is None else label("background", background)
     if labels is None or labels is True:
         return LabelMap(numbers, background)
     chosen = _chosen(labels, background)
@@ -142,19 +142,28 @@ def _colours(values: Pixels) -> NDArray[Any]:
     return numbers
 
 
-def _is_integer(value: object) -> bool:
-    return hasattr(value, "__index__") and not isinstance(value, bool)
+def label(name: str, value: object, expected: str = "an integer or None") -> int:
+    """Return `value` as an int, or say that it cannot be a label."""
+    try:
+        return integer(name, value, least=-(2**63), most=2**63 - 1)
+    except ParameterError:
+        raise ParameterError(f"{name}: expected {expected}, found {shown(value)}") from None
+
+
+def picked(labels: object) -> list[int]:
+    """Return labels given as a list, set, array or iterator, rising, each once."""
+    expected = "True or a list of integers"
+    if isinstance(labels, (str, bytes, bytearray, Mapping)) or not isinstance(labels, Iterable) or getattr(labels, "ndim", 1) != 1:
+        raise ParameterError(f"labels: expected {expected}, found {shown(labels)}")
+    values = list(islice(labels, MOST_LABELS + 1))
+    if not 0 < len(values) <= MOST_LABELS:
+        raise ParameterError(f"labels: expected {expected}, found {f'more than {MOST_LABELS}' if values else shown(values)}")
+    return sorted({label("labels", value, expected) for value in values})
 
 
 def _chosen(labels: object, background: int | None) -> list[int]:
-    """Return the labels picked, rising, each once."""
-    if isinstance(labels, (str, bytes)) or not isinstance(labels, Iterable):
-        raise ParameterError(f"labels: expected True or a list of integers, found {labels!r}")
-    values = list(labels)
-    wrong = [value for value in values if not _is_integer(value)]
-    if wrong or not values:
-        raise ParameterError(f"labels: expected True or a list of integers, found {wrong[0] if wrong else values!r}")
-    chosen = sorted({int(value) for value in values})
+    """Return the labels picked; the background cannot be one of them."""
+    chosen = picked(labels)
     if background in chosen:
         raise ParameterError(f"labels: expected values other than the background, found {background}; give background=None to mesh it too")
     return chosen

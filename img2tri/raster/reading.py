@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from img2tri.errors import ParameterError, finite, integer
+from img2tri.errors import ParameterError, finite, integer, shown
 from img2tri.raster.checking import pixels
 from img2tri.raster.imagedata import from_image_data, is_image_data
 from img2tri.records import Frame, Picture
@@ -118,7 +118,7 @@ def _corner(origin: str | Sequence[float]) -> tuple[Pair, bool]:
     if isinstance(origin, str) and origin in ("lower", "upper"):
         return (0.0, 0.0), origin == "lower"
     if not _is_sequence(origin):
-        raise ParameterError(f"origin: expected 'lower', 'upper' or a pair (x, y), found {origin!r}")
+        raise ParameterError(f"origin: expected 'lower', 'upper' or a pair (x, y), found {shown(origin)}")
     x, y = _pair("origin", origin)
     return (finite("origin", x), finite("origin", y)), True
 
@@ -129,6 +129,6 @@ def _is_sequence(value: object) -> bool:
 
 def _pair(name: str, value: Any) -> tuple[Any, Any]:
     if len(value) != 2:
-        raise ParameterError(f"{name}: expected a pair of numbers, found {len(value)}: {value!r}")
+        raise ParameterError(f"{name}: expected a pair of numbers, found {len(value)}: {shown(value)}")
     first, second = value
     return first, second

@@ -1,7 +1,8 @@
 """Which pieces of outlines come too near to each other, or meet at too sharp an angle.
 
 Pieces are chords, each standing for a run of dense points that bulges from it by so much. Two pieces are clear of each other if they
-are farther apart than both bulges, and a gap.
+are farther apart than both bulges, and a gap. Of two pieces that were clear, one has to be *fresh* for them not to be: so only
+what is beside fresh pieces is looked at.
 """
 
 from __future__ import annotations
@@ -10,49 +11,98 @@ import numpy as np
 
 from img2tri.records import Bools, Floats, Ints
 from img2tri.shapes.drafts import Draft
+from img2tri.shapes.unrolling import Points, cross
 
 GAP = 0.25  # px, the least distance kept between pieces, over their bulges
-SHARP = np.radians(50.0)  # pieces that meet at less are too sharp
+SHARP = np.cos(np.radians(50.0))  # pieces that meet at less than this angle are too sharp
 
 
-def sharp_pieces(d: Draft, first: Ints, last: Ints) -> Bools:
-    """Tell which pieces meet another one at a sharp angle."""
-    n, place = len(first), d.places
-    point = d.outlines.indices[np.concatenate([first, last])]
-    heading = np.angle(np.concatenate([place[last] - place[first], place[first] - place[last]]))
-    order = np.lexsort((heading, point))
-    point, heading = point[order], heading[order]
-    begin = np.flatnonzero(np.diff(point, prepend=-1))
-    after = np.arange(1, 2 * n + 1)
-    after[np.append(begin[1:], 2 * n) - 1] = begin
-    turn = np.mod(heading[after] - heading, 2 * np.pi)
-    pair = np.flatnonzero((turn < SHARP) & (after != np.arange(2 * n)))
+def sharp_pieces(d: Draft, first: Ints, last: Ints, fresh: Bools) -> Bools:
+    """Tell which pieces meet another one at a sharp angle, at least one of the two being fresh."""
+    n, at, place = len(first), d.outlines.indices, d.places
+    touched = np.zeros(len(d.dense), bool)
+    touched[at[first[fresh]]] = touched[at[last[fresh]]] = True
+    # All ends of pieces at these points, those at the same point one after the other.
+    point = at[np.concatenate([first, last])]
+    end = np.flatnonzero(touched[point])
+    end = end[np.argsort(point[end], kind="stable")]
+    point, piece = point[end], end % n
+    heading = (place[last[piece]] - place[first[piece]]) * np.where(end < n, 1, -1)
+    length = np.abs(heading)
     sharp = np.zeros(n, bool)
-    sharp[order[pair] % n] = sharp[order[after[pair]] % n] = True
+    for step in range(1, len(end)):
+        one = np.flatnonzero(point[step:] == point[:-step])
+        if not len(one):
+            break
+        other = one + step
+        narrow = (heading[one] * heading[other].conj()).real > SHARP * length[one] * length[other]
+        sharp[piece[one[narrow]]] = sharp[piece[other[narrow]]] = True
     return sharp
 
 
 def crowded_pieces(d: Draft, first: Ints, last: Ints, fresh: Bools) -> Bools:
     """Tell which pieces come too near to another one that is not their neighbour, at least one of the two being fresh."""
+    at, place, bulge = d.outlines.indices, d.places, d.bulge[first]
+    a, b = place[first], place[last]
+    i, j = _within(a, b, GAP + bulge + bulge[fresh].max(), fresh)
+    head, tail = at[first], at[last]
+    apart = (head[i] != head[j]) & (head[i] != tail[j]) & (tail[i] != head[j]) & (tail[i] != tail[j])
+    i, j = i[apart], j[apart]
+    distance = _distance(a[i], b[i], a[j], b[j])
+    near = np.flatnonzero(distance < GAP + bulge[i] + bulge[j])
+    i, j, distance = i[near], j[near], distance[near]
+    # Along the same chain two pieces are only near if the way between them is long for that.
+    crowded = np.zeros(len(first), bool)
+    if len(i):
+        long = _way_between(d, first, last, i, j) > np.maximum(4 * distance, 1.0)
+        crowded[i[long]] = crowded[j[long]] = True
+    return crowded
+
+
+def _within(a: Points, b: Points, reach: Floats, fresh: Bools) -> tuple[Ints, Ints]:
+    """Pairs of a fresh segment and another whose boxes, one of them widened by `reach`, meet; each pair once."""
     import shapely
 
-    place, at = d.places, d.outlines.indices
-    a, b = place[first], place[last]
-    bulge = d.bulge[first]
-    chords = shapely.linestrings(np.stack([np.stack([a.real, a.imag], 1), np.stack([b.real, b.imag], 1)], axis=1))
-    reach = GAP + bulge[fresh] + bulge.max()
-    i, j = shapely.STRtree(chords).query(chords[fresh], predicate="dwithin", distance=reach)
-    i = np.flatnonzero(fresh)[i]
-    apart = (at[first[i]] != at[first[j]]) & (at[first[i]] != at[last[j]]) & (at[last[i]] != at[first[j]]) & (at[last[i]] != at[last[j]])
-    i, j = i[apart], j[apart]
-    distance = shapely.distance(chords[i], chords[j])
-    near = distance < GAP + bulge[i] + bulge[j]
-    # Along the same chain two pieces are only near if the way between them is long for that.
-    way = _way_between(d, first, last, i, j)
-    near &= way > np.maximum(4 * distance, 1.0)
-    crowded = np.zeros(len(first), bool)
-    crowded[i[near]] = crowded[j[near]] = True
-    return crowded
+    low = np.minimum(a.real, b.real) + 1j * np.minimum(a.imag, b.imag)
+    high = np.maximum(a.real, b.real) + 1j * np.maximum(a.imag, b.imag)
+    others = np.flatnonzero(_around((low + high) / 2, np.abs(high - low).max() + reach.max(), fresh))
+    chosen = np.flatnonzero(fresh)
+    boxes = shapely.linestrings(np.stack([low[chosen], high[chosen]], axis=1).view(np.float64).reshape(-1, 2, 2))
+    margin = reach[others] * (1 + 1j)
+    wide = np.stack([low[others] - margin, high[others] + margin], axis=1).view(np.float64).reshape(-1, 2, 2)
+    j, i = shapely.STRtree(boxes).query(shapely.linestrings(wide))
+    i, j = chosen[i], others[j]
+    once = (i < j) | ((i > j) & ~fresh[j])
+    return i[once], j[once]
+
+
+def _around(middles: Points, reach: float, chosen: Bools) -> Bools:
+    """Tell which places may be within reach of the chosen ones: those in the same square of a grid, or in one beside it."""
+    column, row = (np.floor((part - part.min()) / reach).astype(np.int64) + 1 for part in (middles.real, middles.imag))
+    width = int(column.max()) + 2
+    square = row * width + column
+    marked = np.zeros((int(row.max()) + 2) * width, bool)
+    hit = np.unique(square[chosen])
+    for beside in (-width - 1, -width, 1 - width, -1, 0, 1, width - 1, width, width + 1):
+        marked[hit + beside] = True
+    return np.asarray(marked[square])
+
+
+def _distance(a: Points, b: Points, c: Points, d: Points) -> Floats:
+    """Distance between segments from a to b and from c to d; 0 where they cross."""
+    crossing = cross(b - a, c - a) * cross(b - a, d - a) < 0
+    crossing &= cross(d - c, a - c) * cross(d - c, b - c) < 0
+    least = np.minimum(to_segment(a, c, d), to_segment(b, c, d))
+    least = np.minimum(least, np.minimum(to_segment(c, a, b), to_segment(d, a, b)))
+    return np.where(crossing, 0, least)
+
+
+def to_segment(p: Points, a: Points, b: Points) -> Floats:
+    """Distance of points to segments from a to b."""
+    along, off = b - a, p - a
+    square = np.maximum(along.real**2 + along.imag**2, 1e-300)
+    share = np.clip((off.real * along.real + off.imag * along.imag) / square, 0, 1)
+    return np.asarray(np.abs(off - share * along))
 
 
 def _way_between(d: Draft, first: Ints, last: Ints, i: Ints, j: Ints) -> Floats:

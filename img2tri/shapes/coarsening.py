@@ -22,8 +22,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from img2tri.records import Floats, Ints
-from img2tri.shapes.clearance import crowded_pieces, sharp_pieces
+from img2tri.records import Ints
+from img2tri.shapes.clearance import crowded_pieces, sharp_pieces, to_segment
 from img2tri.shapes.drafts import Draft
 from img2tri.shapes.unrolling import Points
 
@@ -39,7 +39,7 @@ def settle(d: Draft, *, tolerance: float) -> Draft:
         fresh = d.tested[first] != last
         if not fresh.any():
             return d
-        conflicting = crowded_pieces(d, first, last, fresh) | sharp_pieces(d, first, last)
+        conflicting = crowded_pieces(d, first, last, fresh) | sharp_pieces(d, first, last, fresh)
         short = np.abs(d.places[last] - d.places[first]) < SHORT
         d.tested[first] = last
         divisible = last - first > 1
@@ -83,15 +83,14 @@ def _split_bulging(d: Draft, tolerance: float) -> None:
         first, last = first[fresh], last[fresh]
         if not len(first):
             return
-        place = z + d.moved
         # Points on the way to the middle of their link are still on it, others may have left it sideways.
-        astray = np.where(d.reset[d.outlines.indices], 0, np.abs(d.moved))
-        a, b = place[first], place[last]
+        astray = [np.where(d.reset[d.outlines.indices[end]], 0, np.abs(d.moved[end])) for end in (first, last)]
         inner = last - first - 1
         which = np.repeat(np.arange(len(first)), inner)
         at = first[which] + 1 + np.arange(len(which)) - np.repeat(np.cumsum(inner) - inner, inner)
-        distance = _to_segment(z[at], a[which], b[which])
-        d.bulge[first] = np.maximum(astray[first], astray[last])
+        a, b = z[first] + d.moved[first], z[last] + d.moved[last]
+        distance = to_segment(z[at], a[which], b[which])
+        d.bulge[first] = np.maximum(*astray)
         d.measured[first] = last
         some = np.flatnonzero(inner)
         if not len(some):
@@ -116,7 +115,9 @@ def _reset(d: Draft, entries: Ints, tolerance: float) -> None:
     if not len(points):
         return
     d.reset[points] = True
-    touched = np.isin(d.outlines.indices, points)
+    chosen = np.zeros(len(d.dense), bool)
+    chosen[points] = True
+    touched = chosen[d.outlines.indices]
     at = d.outlines.indices[touched]
     way = d.links.middle[at] - d.dense[at]
     d.moved[touched] = way * np.minimum(1, tolerance / np.maximum(np.abs(way), 1e-12))
@@ -124,10 +125,3 @@ def _reset(d: Draft, entries: Ints, tolerance: float) -> None:
     count = np.concatenate([[0], np.cumsum(touched)])
     stale = first[count[last + 1] > count[first]]
     d.measured[stale] = d.tested[stale] = -1
-
-
-def _to_segment(p: Points, a: Points, b: Points) -> Floats:
-    """Distance of points to segments."""
-    along = b - a
-    share = np.clip(((p - a) * along.conj()).real / np.maximum(np.abs(along) ** 2, 1e-300), 0, 1)
-    return np.asarray(np.abs(p - a - share * along))

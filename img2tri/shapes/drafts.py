@@ -10,6 +10,7 @@ from img2tri.records import Bools, Floats, Ints, Outlines
 from img2tri.shapes.links import Links
 from img2tri.shapes.unrolling import Points
 
+SAME = 1e-6  # px, places that differ by less are the same, up to rounding
 RING = 8  # a ring keeps at least so many pieces, or all its crossings
 
 
@@ -52,9 +53,9 @@ class Draft:
     def pieces(self) -> tuple[Ints, Ints]:
         """First and last entry of each piece."""
         at = np.flatnonzero(self.breaks)
-        chain = self.links.chain[at]
-        same = chain[1:] == chain[:-1]
-        return at[:-1][same], at[1:][same]
+        # Both ends of every chain are breaks: from one to the next chain there is no piece.
+        between = np.searchsorted(at, self.outlines.starts[1:-1]) - 1
+        return np.delete(at[:-1], between), np.delete(at[1:], between)
 
     @property
     def places(self) -> Points:
@@ -70,10 +71,13 @@ class Draft:
         return Outlines(np.stack([place.real, place.imag], axis=1), index, starts, o.left, o.right, o.labels)
 
 
-def draft(outlines: Outlines, links: Links, *, spacing: float | Floats, keep_corners: bool = False) -> Draft:
+def draft(
+    outlines: Outlines, links: Links, *, spacing: float | Floats, keep_corners: bool = False, settled: Draft | None = None
+) -> Draft:
     """Set breaks along each chain, `spacing` px apart: one length, or one at each entry (k,).
 
-    With `keep_corners` no corner of an outline is ever blunted.
+    With `keep_corners` no corner of an outline is ever blunted. Pieces that are also in a `settled` draft of the same outlines
+    need no other measure and test.
     """
     dense = outlines.points[:, 0] + 1j * outlines.points[:, 1]
     k, starts = len(outlines.indices), outlines.starts
@@ -102,4 +106,13 @@ def draft(outlines: Outlines, links: Links, *, spacing: float | Floats, keep_cor
     breaks[at[inner]] = True
     breaks[starts[:-1]] = breaks[starts[1:] - 1] = True
     kept = links.corner if keep_corners else np.zeros(len(dense), bool)
-    return Draft(outlines, links, dense, np.zeros(len(dense), bool), kept, breaks, moved, np.full(k, -1), np.full(k, -1), np.zeros(k))
+    measured, bulge = np.full(k, -1), np.zeros(k)
+    new = Draft(outlines, links, dense, np.zeros(len(dense), bool), kept, breaks, moved, measured, np.full(k, -1), bulge)
+    if settled is not None:
+        first, last = new.pieces
+        same = settled.breaks & ~settled.reset[outlines.indices] & (np.abs(settled.moved - moved) < SAME)
+        same = (settled.tested[first] == last) & same[first] & same[last]
+        first, last = first[same], last[same]
+        new.measured[first] = new.tested[first] = last
+        new.bulge[first] = settled.bulge[first]
+    return new

@@ -34,25 +34,28 @@ FILLINGS = 12  # how often a network is filled at most until both sides agree
 NEAR = 1e-9  # of the size of the image: what lies so near to a side lies on it
 
 
-def check_sides(labels: NDArray[Any], periodic: str | None) -> None:
-    """Check that the labels (h, w) along opposite sides are the same.
+def check_periodic(periodic: str | None, labels: NDArray[Any], *, recipe: str = "conforming", smoothing: str | None = None) -> None:
+    """Check that the labels (h, w) along opposite sides are the same, and that nothing else stands against the option.
 
     Raises
     ------
     ParameterError
-        If `periodic` is none of None, "x", "y", "xy".
+        If `periodic` is none of None, "x", "y", "xy"; if the recipe is one of the paper's, or smoothing moves the boundary.
     ImageError
-        If they differ; it says where they first do.
+        If the labels differ; it says where they first do.
 
     Examples
     --------
-    >>> check_sides(np.array([[1, 2, 1], [2, 2, 1]]), "x")
+    >>> check_periodic("x", np.array([[1, 2, 1], [2, 2, 1]]))
     Traceback (most recent call last):
     ...
     img2tri.errors.ImageError: periodic: expected the same labels in the first and the last column, found 2 and 1 in row 1 (1 such); ...
     """
     if periodic not in DIRECTIONS:
         raise ParameterError(f"periodic: expected 'x', 'y', 'xy' or None, found {periodic!r}")
+    if periodic and (recipe != "conforming" or smoothing == "cotangent"):
+        found = f"recipe {recipe!r}" if recipe != "conforming" else f"smoothing {smoothing!r}"
+        raise ParameterError(f"periodic: expected None with {found}, which does not keep opposite sides alike, found {periodic!r}")
     for name in periodic or "":
         axis, line = SIDES[name]
         first, last = np.take(labels, [0, -1], axis=axis) if axis == 0 else np.take(labels, [0, -1], axis=axis).T
@@ -153,6 +156,11 @@ class Twins:
                 result = _divided(result, places, *wall)
         return result
 
+    def check(self, chains: Outlines, vertices: Floats) -> None:
+        """Raise `MeshError` if a mesh has its vertices at other places on one side than on the other."""
+        if self.divided(chains, vertices) is not chains:
+            raise MeshError(f"periodic: expected opposite sides divided alike after {FILLINGS} rounds, found that they differ")
+
     @staticmethod
     def _missing(points: Floats, vertices: Floats, axis: int, low: float, high: float) -> Floats:
         """Places along a side (k,) at which filling divided it: between two points that were given, those of the side that has more.
@@ -173,7 +181,7 @@ class Twins:
 
 
 def find_twins(outlines: Outlines, links: Links, periodic: str | None) -> Twins:
-    """Find the twins on opposite sides of an image whose labels there are the same, see `check_sides`.
+    """Find the twins on opposite sides of an image whose labels there are the same, see `check_periodic`.
 
     Parameters
     ----------

@@ -48,17 +48,21 @@ class Band:
     front: Ints
 
 
-def band(network: Network, sizes: Sizes, lattice: Lattice, rings: int) -> Band:
-    """Place the points of a network: apexes, nodes of the lattice, finer nodes. The depth begins `rings` nodes further in."""
-    walls, walls_wanted = keepers(network, sizes)
-    tips, tips_wanted = apexes(network, sizes)
+def band(network: Network, at_points: Floats, at_middles: Floats, sizes: Sizes, lattice: Lattice, rings: int) -> Band:
+    """Place the points of a network: apexes, nodes of the lattice, finer nodes. The depth begins `rings` nodes further in.
+
+    `at_points` and `at_middles` are the lengths wanted at the points of the network and the middles of its segments.
+    """
+    walls, walls_wanted = keepers(network, at_points, at_middles)
+    tips, tips_wanted = apexes(network, at_middles)
     near, wanted = np.concatenate([walls, tips]), np.concatenate([walls_wanted, tips_wanted])
     stays = spread(near, wanted, len(walls))
     near, wanted = near[stays], wanted[stays]
     labels = lattice.labels(network.points, network.segments, network.left, network.right)
-    busy, fine, fine_wanted = _fine(sizes, lattice, labels)
+    busy, fine, fine_wanted = _fine(network, sizes, lattice, labels)
     if len(fine):
-        fine = fine[_inside(network, fine) & _clear(near, fine, fine_wanted)]
+        fine = fine[_clear(near, fine, fine_wanted)]
+        fine = fine[_inside(network, fine)]
     labels[lattice.around(near, CLEAR * wanted)] = 0
     # The depth keeps clear of finer nodes too.
     core = labels.copy()
@@ -76,14 +80,18 @@ def band(network: Network, sizes: Sizes, lattice: Lattice, rings: int) -> Band:
     return Band(fence, len(network.segments), loose, depth, front)
 
 
-def _fine(sizes: Sizes, lattice: Lattice, labels: Labels) -> tuple[Ints, Complex, Floats]:
+def _fine(network: Network, sizes: Sizes, lattice: Lattice, labels: Labels) -> tuple[Ints, Complex, Floats]:
     """Find finer nodes where the wanted length is below the pitch: around its sources, or anywhere if it is a field."""
-    asked = np.zeros(len(labels), bool)
-    if len(sizes.sources):
-        asked[lattice.around(sizes.sources, np.full(len(sizes.sources), lattice.pitch))] = True
-        asked = lattice.grown(asked, 1 + int(sizes.reach / lattice.height))
-    if sizes.field is not None:
-        asked |= lattice.grown(labels != 0, 1)
+    if sizes.uniform:
+        return np.zeros(0, np.int64), np.zeros(0, np.complex128), np.zeros(0)
+    # Nodes inside of the outlines or beside them: no others have descendants inside.
+    asked = labels != 0
+    asked[lattice.around(network.points, np.full(len(network.points), lattice.pitch))] = True
+    asked = lattice.grown(asked, 2)
+    if sizes.field is None:
+        near = np.zeros(len(labels), bool)
+        near[lattice.around(sizes.sources, np.full(len(sizes.sources), lattice.pitch))] = True
+        asked &= lattice.grown(near, 1 + int(sizes.reach / lattice.height))
     return finer(lattice, np.flatnonzero(asked), sizes)
 
 
@@ -98,7 +106,7 @@ def _inside(network: Network, points: Complex) -> Bools:
 
 def _clear(near: Complex, points: Complex, wanted: Floats) -> Bools:
     """Whether points keep clear of others."""
-    clear: Bools = nearest_of(near, points)[0] > CLEAR * wanted
+    clear: Bools = nearest_of(near, points, CLEAR * wanted.max())[0] > CLEAR * wanted
     return clear
 
 

@@ -172,7 +172,8 @@ def _label(triangulation: pythoncdt.Triangulation, n: int, segments: Ints, left:
     """All triangles, also those of region 0, and the regions that the segments vote for."""
     table = triangulation.triangles_array(copy=False)
     triangles, neighbours = table["vertices"].astype(np.int64) - SUPER, table["neighbors"].view(np.int32)
-    outer = np.flatnonzero(triangles.min(axis=1) < 0)
+    a, b, c = triangles.T
+    outer = np.flatnonzero((a < 0) | (b < 0) | (c < 0))
     edges, owners, votes = _votes(triangles, n, segments, left, right)
     faces = _faces(neighbours, edges)
     # Every face takes the label one of its voters names; the face around everything, 0.
@@ -205,10 +206,11 @@ def _votes(triangles: Ints, n: int, segments: Ints, left: Ints, right: Ints) -> 
     # One number per directed edge: those of the segments, and those of the segments turned round.
     known = np.concatenate([segments[:, 0] * n + segments[:, 1], segments[:, 1] * n + segments[:, 0]])
     order = np.argsort(known)
+    known = known[order]
     wanted = start[edges] * n + stop[edges]
-    found = order[np.minimum(np.searchsorted(known, wanted, sorter=order), len(known) - 1)]
+    found = np.minimum(np.searchsorted(known, wanted), len(known) - 1)
     hit = known[found] == wanted
-    edges, found = edges[hit], found[hit]
+    edges, found = edges[hit], order[found[hit]]
     if len(edges) != len(known):
         raise NetworkError("segments: expected each once, and no point on them")
     return edges, found % len(segments), np.concatenate([left, right])[found]
@@ -219,7 +221,8 @@ def _faces(neighbours: NDArray[np.int32], walls: Ints) -> Ints:
     passable = neighbours >= 0
     passable.ravel()[walls] = False
     ends = np.zeros(len(neighbours) + 1, np.int32)
-    np.cumsum(passable.sum(axis=1), out=ends[1:])
+    a, b, c = passable.view(np.int8).T
+    np.cumsum(a + b + c, out=ends[1:])
     beyond = neighbours[passable]
     graph = csr_array((np.ones(len(beyond)), beyond, ends), shape=(len(neighbours),) * 2)
     # Its links all go both ways: strongly connected is connected, and found without a transposed copy.

@@ -101,12 +101,12 @@ def fill(
         return points.copy(), np.zeros((0, 3), np.int64), np.zeros(0, np.int64)
     given, names = _network(points, segments, left, right)
     sizes = _sizes(given, edge_length, gradation, size)
-    network = given.divided(sizes)
+    network, at_points, at_middles = given.divided(sizes)
     lattice = Lattice.over(network.points, edge_length, _shift(seed))
     try:
         # To mend the mesh may take splitting an edge of the depth, which cannot be: then again with less depth, or none.
         for rings in (2, 8, lattice.rows):
-            laid = band(network, sizes, lattice, rings)
+            laid = band(network, at_points, at_middles, sizes, lattice, rings)
             mesh = mended(*settled(laid), laid.fence, laid.own, min_angle)
             if mesh is not None:
                 break

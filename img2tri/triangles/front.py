@@ -11,7 +11,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from img2tri.records import Bools, Floats, Ints
-from img2tri.triangles.grading import Sizes, pairs
+from img2tri.triangles.grading import pairs
 from img2tri.triangles.lattice import Complex
 from img2tri.triangles.network import Network
 
@@ -19,13 +19,12 @@ CROWDED = 0.68  # two points nearer than this times the wanted edge length are o
 MIDDLE = 0.6  # the middle of a segment keeps others off by this part of what a point does: an apex may look at it from near
 
 
-def apexes(network: Network, sizes: Sizes) -> tuple[Complex, Floats]:
+def apexes(network: Network, wanted: Floats) -> tuple[Complex, Floats]:
     """Put an apex over both sides of each segment, where there is a region; return places and wanted edge lengths.
 
-    Over a segment of length l the sides of the triangle get (l + wanted) / 2.
+    `wanted` are the lengths at the segments. Over a segment of length l the sides of the triangle get (l + wanted) / 2.
     """
     start, stop = network.ends
-    wanted = sizes.at(network.middles)
     length = network.lengths
     up = 1j * (stop - start) / length * 0.5 * np.sqrt(wanted * (wanted + 2 * length))
     on_left, on_right = network.left != 0, network.right != 0
@@ -33,10 +32,9 @@ def apexes(network: Network, sizes: Sizes) -> tuple[Complex, Floats]:
     return places, np.concatenate([wanted[on_left], wanted[on_right]])
 
 
-def keepers(network: Network, sizes: Sizes) -> tuple[Complex, Floats]:
+def keepers(network: Network, at_points: Floats, at_middles: Floats) -> tuple[Complex, Floats]:
     """Return places on the network, and the lengths by which others are kept off: the points, and the middles, which keep less."""
-    wanted = np.concatenate([sizes.at(network.points), MIDDLE * sizes.at(network.middles)])
-    return np.concatenate([network.points, network.middles]), wanted
+    return np.concatenate([network.points, network.middles]), np.concatenate([at_points, MIDDLE * at_middles])
 
 
 def spread(points: Complex, wanted: Floats, fixed: int) -> Bools:

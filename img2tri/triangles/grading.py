@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -70,19 +71,29 @@ class Sizes:
         if self.field is not None:
             wanted = np.minimum(wanted, self.field(pairs(points)))
         # Least of length + gradation * distance over all sources, found as the nearest source among those of about equal length.
-        level: Ints = np.floor(np.log2(self.largest / self.lengths)).astype(np.int64)
-        for k in np.unique(level):
-            sources, lengths = self.sources[level == k], self.lengths[level == k]
-            reach = (self.largest - lengths.min()) / self.gradation
-            distance, nearest = nearest_of(sources, points, reach)
-            near = np.flatnonzero(nearest < len(sources))
-            wanted[near] = np.minimum(wanted[near], lengths[nearest[near]] + self.gradation * distance[near])
+        for sources, lengths in self._classes:
+            least = lengths.min()
+            open_ = np.flatnonzero(wanted > least)
+            distance, nearest = _nearest(sources, points[open_], (self.largest - least) / self.gradation)
+            near = np.flatnonzero(nearest < len(lengths))
+            open_, nearest = open_[near], nearest[near]
+            wanted[open_] = np.minimum(wanted[open_], lengths[nearest] + self.gradation * distance[near])
         return wanted
+
+    @cached_property
+    def _classes(self) -> list[tuple[cKDTree, Floats]]:
+        """Sources with lengths within a factor of two, and these; the shortest first."""
+        level: Ints = np.floor(np.log2(self.largest / self.lengths)).astype(np.int64)
+        return [(cKDTree(pairs(self.sources[level == k])), self.lengths[level == k]) for k in np.unique(level)[::-1]]
 
 
 def nearest_of(sources: Complex, points: Complex, reach: float = np.inf) -> tuple[Floats, Ints]:
     """Return the distance of each point to the nearest source within reach, and its number, or the count of sources if there is none."""
-    distance, nearest = cKDTree(pairs(sources)).query(pairs(points), distance_upper_bound=reach)
+    return _nearest(cKDTree(pairs(sources)), points, reach)
+
+
+def _nearest(sources: cKDTree, points: Complex, reach: float) -> tuple[Floats, Ints]:
+    distance, nearest = sources.query(pairs(points), distance_upper_bound=reach)
     return np.asarray(distance, np.float64), np.asarray(nearest, np.int64)
 
 

@@ -15,7 +15,7 @@ from img2tri.triangles.delaunay import refine
 from img2tri.triangles.grading import pairs
 from img2tri.triangles.lattice import Complex
 from img2tri.triangles.network import Network
-from img2tri.triangles.relaxing import ANNEAL, relaxed, smallest_angles
+from img2tri.triangles.relaxing import ANNEAL, relaxed, smallest_angles, touched
 
 RINGS = (3, 6, 12, 24, 1_000_000)  # how far patches reach, one after the other
 SHORTEST = 0.05  # no edge becomes shorter than about this times the shortest segment in the patch
@@ -57,9 +57,9 @@ def mended(
 def _grown(chosen: Bools, triangles: Ints, rings: int) -> Bools:
     """Add the triangles that share a vertex with those chosen, and so on."""
     for _ in range(rings):
-        touched = np.zeros(triangles.max() + 1, bool)
-        touched[triangles[chosen]] = True
-        grown: Bools = np.any(touched[triangles], axis=1)
+        zone = np.zeros(triangles.max() + 1, bool)
+        zone[triangles[chosen]] = True
+        grown = touched(triangles, zone)
         if np.array_equal(grown, chosen):
             break
         chosen = grown

@@ -52,8 +52,10 @@ class Network:
         start, stop = self.ends
         return np.abs(stop - start)
 
-    def divided(self, sizes: Sizes) -> Network:
+    def divided(self, sizes: Sizes) -> tuple[Network, Floats, Floats]:
         """Divide segments that are too long for the wanted length, with parts that grow as it does. The points stay the first ones.
+
+        Also return the wanted length at the points, and at the middles of the segments.
 
         From either end to the middle the wanted length is taken as linear, from a to b. Then a stretch of length l holds
         l log(b / a) / (b - a) wanted lengths, and parts of equal share grow in geometric progression.
@@ -65,7 +67,7 @@ class Network:
         shares = first_share + last_share
         parts = np.maximum(1, np.ceil(shares - ROUND_UP)).astype(np.int64)
         if not len(parts) or parts.max() == 1:
-            return self
+            return self, at_points, at_middles
         of, part = runs(parts)
         new = np.flatnonzero(part > 0)
         share = (part / parts[of] * shares[of])[new]
@@ -78,7 +80,11 @@ class Network:
         points = start[of[new]] + (stop - start)[of[new]] * np.where(head, way, 1 - way)
         segments = self.segments[of]
         segments[new, 0] = segments[new - 1, 1] = len(self.points) + np.arange(len(new))
-        return Network(np.concatenate([self.points, points]), segments, self.left[of], self.right[of], self.origin[of])
+        network = Network(np.concatenate([self.points, points]), segments, self.left[of], self.right[of], self.origin[of])
+        at_middles = at_middles[of]
+        changed = np.flatnonzero(parts[of] > 1)
+        at_middles[changed] = sizes.at(network.middles[changed])
+        return network, np.concatenate([at_points, sizes.at(points)]), at_middles
 
     def joined(self, points: Complex, segments: Ints, right: Ints) -> Network:
         """Add points, and segments between these, with nothing meshed on their left."""

@@ -20,10 +20,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.sparse import csr_array
+from scipy.sparse import csc_array
 
 from img2tri.records import Bools, Floats, Ints
-from img2tri.triangles.lattice import Complex
+from img2tri.triangles.lattice import Complex, blocks
 
 TURN = np.exp(2j * np.pi / 3)
 DEFECT = np.array([1, TURN, TURN**2])
@@ -43,7 +43,16 @@ RINGS = 3  # of triangles around the worst that may move in a climb
 
 def shapes(vertices: Complex, triangles: Ints) -> tuple[Complex, Floats]:
     """Return defect X and quality of triangles; the quality is at most 1, and negative for clockwise triangles."""
-    a, b, c = (vertices[corner] for corner in triangles.T)
+    return _shapes(vertices, _columns(triangles))
+
+
+def _columns(triangles: Ints) -> Ints:
+    """First, second, third corners (3, m), each side by side in memory."""
+    return np.ascontiguousarray(triangles.T)
+
+
+def _shapes(vertices: Complex, corners: Ints) -> tuple[Complex, Floats]:
+    a, b, c = (vertices[corner] for corner in corners)
     # X, Y = median +- side, where the side is turned by 90 degrees and made as long as the median should be.
     median, side = a - (b + c) / 2, (b - c) * (0.75**0.5 * 1j)
     cross = median.real * side.real + median.imag * side.imag
@@ -53,12 +62,14 @@ def shapes(vertices: Complex, triangles: Ints) -> tuple[Complex, Floats]:
 
 def smallest_tangents(vertices: Complex, triangles: Ints) -> Floats:
     """Return the tangent of the smallest angle of each triangle, which grows with the angle; negative for clockwise triangles."""
-    a, b, c = (vertices[corner] for corner in triangles.T)
-    u, v, w = b - a, c - b, a - c
-    squares = [side.real**2 + side.imag**2 for side in (u, v, w)]
-    shortest = np.minimum(np.minimum(squares[0], squares[1]), squares[2])
-    # The smallest angle lies opposite the shortest side: cot = (sum of the other squares - its square) / (4 area).
-    tangents: Floats = 2 * (u.real * v.imag - u.imag * v.real) / (squares[0] + squares[1] + squares[2] - 2 * shortest)
+    tangents = np.empty(len(triangles))
+    for block in blocks(len(triangles)):
+        a, b, c = vertices[_columns(triangles[block])]
+        u, v, w = b - a, c - b, a - c
+        uu, vv, ww = (side.real**2 + side.imag**2 for side in (u, v, w))
+        shortest = np.minimum(np.minimum(uu, vv), ww)
+        # The smallest angle lies opposite the shortest side: cot = (sum of the other squares - its square) / (4 area).
+        tangents[block] = 2 * (u.real * v.imag - u.imag * v.real) / (uu + vv + ww - 2 * shortest)
     return tangents
 
 
@@ -72,21 +83,31 @@ def relaxed(vertices: Complex, triangles: Ints, free: Bools, schedule: Schedule)
     """Move the free vertices (bool) by damped steps. The worst angle does not fall, nor does any one fall below 30 degrees."""
     moved = vertices.copy()
     n, m = len(vertices), len(triangles)
-    used = np.zeros(n, bool)
-    used[triangles] = True
-    where = np.flatnonzero(free & used)
-    # One row per free vertex, one column per triangle; at first with the numbers of the corners, from 0 to 3 m - 1.
-    corners = csr_array((np.arange(3 * m), (triangles.ravel(), np.repeat(np.arange(m), 3))), shape=(n, m))[where]
-    asked = csr_array((-DEFECT.conj()[corners.data % 3], corners.indices, corners.indptr), shape=corners.shape)
-    heard = csr_array((np.ones(corners.nnz), corners.indices, corners.indptr), shape=corners.shape)
+    corners = _columns(triangles)
+    # One row per vertex, one column per triangle, with an entry for each of its corners.
+    entries, ends = triangles.ravel().astype(np.int32), np.arange(0, 3 * m + 1, 3, dtype=np.int32)
+    asked = csc_array((np.tile(-DEFECT.conj(), m), entries, ends), shape=(n, m))
+    heard = csc_array((np.ones(3 * m), entries, ends), shape=(n, m))
+    where = np.flatnonzero(free & (np.bincount(entries, minlength=n) > 0))
+    weight, pull = np.empty(m), np.empty(m, np.complex128)
     for doublings, damping, steps in schedule:
         for _ in range(steps):
-            defect, quality = shapes(moved, triangles)
-            weight = 1 / np.maximum(quality, FLATTEST)
-            for _ in range(doublings):
-                weight *= weight
-            moved[where] += damping * np.asarray(asked @ (weight * defect)) / np.asarray(heard @ weight)
+            for block in blocks(m):
+                defect, quality = _shapes(moved, corners[:, block])
+                loud = 1 / np.maximum(quality, FLATTEST)
+                for _ in range(doublings):
+                    loud *= loud
+                weight[block] = loud
+                np.multiply(loud, defect, out=pull[block])
+            moved[where] += damping * np.asarray(asked @ pull)[where] / np.asarray(heard @ weight)[where]
     return _guarded(vertices, moved, triangles)
+
+
+def touched(triangles: Ints, marked: Bools) -> Bools:
+    """Tell which triangles have a marked vertex."""
+    a, b, c = (marked[corner] for corner in triangles.T)
+    either: Bools = a | b | c
+    return either
 
 
 def climbed(vertices: Complex, triangles: Ints, free: Bools, target: float = TARGET) -> Complex:
@@ -99,7 +120,7 @@ def climbed(vertices: Complex, triangles: Ints, free: Bools, target: float = TAR
         for _ in range(RINGS):
             zone = np.zeros(len(vertices), bool)
             zone[triangles[near]] = True
-            near = zone[triangles].any(axis=1)
+            near = touched(triangles, zone)
         vertices = relaxed(vertices, triangles[near], free & zone, CLIMB)
     return vertices
 
@@ -107,13 +128,17 @@ def climbed(vertices: Complex, triangles: Ints, free: Bools, target: float = TAR
 def _guarded(before: Complex, after: Complex, triangles: Ints) -> Complex:
     """Shorten the moves of vertices of triangles that became bad: whose angle fell below 30 degrees or below the worst before."""
     tangents = smallest_tangents(before, triangles)
-    least = np.minimum(tangents, max(SAFE, tangents.min(initial=np.inf)))
-    part = np.ones(len(before))
-    while True:
-        moved = before + part * (after - before)
-        worse = smallest_tangents(moved, triangles) < least - 1e-12
+    least = np.minimum(tangents, max(SAFE, tangents.min(initial=np.inf))) - 1e-12
+    moved, part = after.copy(), np.ones(len(before))
+    worse = np.flatnonzero(smallest_tangents(after, triangles) < least)
+    while len(worse):
         back = np.unique(triangles[worse])
         back = back[part[back] > 0]
-        if not len(back):
-            return moved
         part[back] = np.where(part[back] > 0.2, part[back] / 2, 0)  # a half, a quarter, an eighth, none
+        moved[back] = before[back] + part[back] * (after[back] - before[back])
+        # Only triangles at these vertices have changed.
+        changed = np.zeros(len(before), bool)
+        changed[back] = True
+        doubtful = np.flatnonzero(touched(triangles, changed))
+        worse = doubtful[smallest_tangents(moved, triangles[doubtful]) < least[doubtful]]
+    return moved

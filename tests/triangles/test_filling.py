@@ -81,12 +81,14 @@ def test_long_segments_are_divided():
 def test_parts_of_a_segment_grow_with_the_wanted_length():
     line = Network(np.array([0, 100.0]) + 0j, np.array([[0, 1]]), np.array([1]), np.array([0]), np.array([0]))
     sizes = Sizes(50.0, 0.3, np.array([0j]), np.array([1.0]))
-    divided = line.divided(sizes)
+    divided, at_points, at_middles = line.divided(sizes)
     places = np.sort(divided.points.real)
     assert divided.points[:2] == pytest.approx(line.points)
     assert np.diff(places) == pytest.approx(sizes.at((places[1:] + places[:-1]) / 2 + 0j), rel=0.25)
     assert set(divided.origin) == {0}
     assert divided.lengths.sum() == pytest.approx(100)
+    assert (at_points == sizes.at(divided.points)).all()
+    assert (at_middles == sizes.at(divided.middles)).all()
 
 
 def test_the_wanted_length_grows_from_its_sources():
