@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from img2tri.errors import finite
+from img2tri.errors import ParameterError, finite
 from img2tri.raster.zones import Zones
 from img2tri.records import Floats, Frame, Made, Outlines
 from img2tri.shapes.areas import area_error, keep_areas
@@ -29,6 +29,7 @@ from img2tri.shapes.sizing import by_curvature, by_pieces, by_thickness, limit_g
 from img2tri.shapes.unrolling import Points
 
 AREA_ROUNDS, AREA_ERROR = 4, 1e-4  # how often breaks are moved for the sake of areas, and the relative error that is left
+MOST_TRIANGLES = 10**8  # some 10 GB
 USUAL_TRIANGLES = 2000  # what the default edge length aims at
 RESPACINGS = 2  # how often outlines are spaced anew around places that need shorter pieces
 ATTEMPTS = 12  # rounds of refining the outlines; two are the most that ordinary images take
@@ -110,6 +111,7 @@ def wanted_sizes(
         longest, field = max(4.0, math.sqrt(pixel_areas(links)[1:].sum() / USUAL_TRIANGLES * 4 / math.sqrt(3))), None
     else:
         longest, field = length_field(edge_length, frame, labels, gradation=gradation)
+        _check_number(longest if field is None else float(np.mean(field.grid**-2.0)) ** -0.5, links)
     return Sizes(
         longest,
         field,
@@ -119,6 +121,16 @@ def wanted_sizes(
         0.0 if shortest is None else frame.length("min_edge_length", shortest) / frame.pixel,
         gradation,
     )
+
+
+def _check_number(length: float, links: Links) -> None:
+    """Refuse lengths that would fill the memory with triangles."""
+    number = pixel_areas(links)[1:].sum() / (math.sqrt(3) / 4 * length**2)
+    if number > MOST_TRIANGLES:
+        raise ParameterError(
+            f"edge_length: expected at most {MOST_TRIANGLES:.0e} triangles, found a length of {length:.3g} px that needs {number:.1e}; "
+            "make it longer"
+        )
 
 
 def conform(

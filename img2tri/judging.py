@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from img2tri.records import Floats, Ints, Origin, Outlines
+from img2tri.records import Bools, Floats, Ints, Origin, Outlines
 from img2tri.shapes.polygons import rings
 from img2tri.triangles.topology import boundary_edges, unique_edges
 
-STEP = 0.25  # px between the samples that distances are measured at
+STEP = 0.5  # px between the samples that distances are measured at
 
 
 class Curves:
@@ -33,13 +33,24 @@ class Curves:
         result: Floats = self.tree.query_nearest(shapely.points(places), return_distance=True, all_matches=False)[1]
         return result
 
+    def within(self, places: Floats, distance: float) -> Bools:
+        """Tell which places (k, 2) lie within a distance of the nearest segment."""
+        import shapely
+
+        result = np.zeros(len(places), bool)
+        result[self.tree.query(shapely.points(places), predicate="dwithin", distance=distance)[0]] = True
+        return result
+
     def samples(self) -> Floats:
         """Places on the segments, ends included, at most `STEP` apart."""
         a, b = self.ends[:, 0], self.ends[:, 1]
-        count = np.maximum(np.ceil(np.hypot(*(b - a).T) / STEP).astype(np.int64), 1)
+        pieces = np.maximum(np.ceil(np.hypot(*(b - a).T) / STEP).astype(np.int64), 1)
+        count = pieces - 1
         which = np.repeat(np.arange(len(a)), count)
-        share = (np.arange(len(which)) - np.repeat(np.cumsum(count) - count, count)) / count[which]
-        return np.concatenate([a[which] + share[:, None] * (b - a)[which], b])
+        share = (1 + np.arange(len(which)) - np.repeat(np.cumsum(count) - count, count)) / pieces[which]
+        ends = np.zeros(len(self.points), bool)
+        ends[self.segments] = True
+        return np.concatenate([a[which] + share[:, None] * (b - a)[which], self.points[ends]])
 
 
 def numbers(regions: Ints, labels: Ints) -> tuple[Ints, list[int]]:
@@ -61,16 +72,22 @@ def hausdorff(one: Curves, other: Curves) -> tuple[float, Floats]:
 def wrong_pixels(plane: Floats, triangles: Ints, number: Ints, curves: Curves, origin: Origin) -> Floats:
     """Pixel centres in a wrong region, farther than the tolerance from the edge of the mesh."""
     import shapely
+    from scipy.spatial import cKDTree
 
-    distance = curves.distance(origin.pixels)
-    far = np.flatnonzero(distance > (origin.tolerance or 0.0) + 1e-9)
+    far = np.flatnonzero(~curves.within(origin.pixels, (origin.tolerance or 0.0) + 1e-9))
+    if not len(far):
+        return np.zeros((0, 2))
     found = np.zeros(len(far), np.int64)
     corners = plane[triangles]
+    # Few triangles hold a pixel centre beside an outline: find them by their size, by their boxes, then by their three sides.
+    middle = corners.mean(axis=1)
+    reach = np.sqrt(((corners - middle[:, None]) ** 2).sum(axis=2).max(axis=1))
+    nearest = cKDTree(origin.pixels[far]).query(middle, distance_upper_bound=float(reach.max()) * (1 + 1e-9) + 1e-9)[0]
+    near = np.flatnonzero(nearest <= reach * (1 + 1e-9))
+    low, high = corners[near].min(axis=1), corners[near].max(axis=1)
     tree = shapely.STRtree(shapely.points(origin.pixels[far]))
-    low, high = corners.min(axis=1), corners.max(axis=1)
-    # Few triangles hold a pixel centre beside an outline: find them by their boxes, then by their three sides.
     box, pixel = tree.query(shapely.box(low[:, 0], low[:, 1], high[:, 0], high[:, 1]))
-    inside = np.ones(len(box), bool)
+    inside, box = np.ones(len(box), bool), near[box]
     p = origin.pixels[far[pixel]]
     for k in range(3):
         a, b = corners[box, k], corners[box, (k + 1) % 3]
