@@ -29,9 +29,10 @@ from img2tri.shapes.sizing import by_curvature, by_pieces, by_thickness, limit_g
 from img2tri.shapes.unrolling import Points
 
 AREA_ROUNDS, AREA_ERROR = 4, 1e-4  # how often breaks are moved for the sake of areas, and the relative error that is left
-MOST_TRIANGLES = 10**8  # some 10 GB
 USUAL_TRIANGLES = 2000  # what the default edge length aims at
 RESPACINGS = 2  # how often outlines are spaced anew around places that need shorter pieces
+MOST_TRIANGLES = 100_000_000  # some 2 GB of mesh, and several times that on the way
+LEAST_PIECE = 1e-3  # px; outlines are never cut so fine, so that this is as good as 0
 ATTEMPTS = 12  # rounds of refining the outlines; two are the most that ordinary images take
 
 
@@ -106,12 +107,12 @@ def wanted_sizes(
 
     Equilateral triangles of the default length fill the regions about `USUAL_TRIANGLES` times.
     """
-    finite("gradation", gradation, above=0)
+    gradation = finite("gradation", gradation, least=0.001, most=100)
     if edge_length is None:
         longest, field = max(4.0, math.sqrt(pixel_areas(links)[1:].sum() / USUAL_TRIANGLES * 4 / math.sqrt(3))), None
     else:
         longest, field = length_field(edge_length, frame, labels, gradation=gradation)
-        _check_number(longest if field is None else float(np.mean(field.grid**-2.0)) ** -0.5, links)
+        _check_number(longest, field, float(pixel_areas(links)[1:].sum()), frame)
     return Sizes(
         longest,
         field,
@@ -123,14 +124,13 @@ def wanted_sizes(
     )
 
 
-def _check_number(length: float, links: Links) -> None:
-    """Refuse lengths that would fill the memory with triangles."""
-    number = pixel_areas(links)[1:].sum() / (math.sqrt(3) / 4 * length**2)
+def _check_number(longest: float, field: Field | None, area: float, frame: Frame) -> None:
+    """Refuse lengths that would take more triangles than there is memory for, before any of it is used."""
+    lengths = np.maximum(longest if field is None else field.grid, 1e-100)
+    number = 4 / math.sqrt(3) * float((1 / lengths**2).mean()) * (area if field is None else field.grid.size * field.cell**2)
     if number > MOST_TRIANGLES:
-        raise ParameterError(
-            f"edge_length: expected at most {MOST_TRIANGLES:.0e} triangles, found a length of {length:.3g} px that needs {number:.1e}; "
-            "make it longer"
-        )
+        enough = f"; of one length for all, {math.sqrt(area * 4 / math.sqrt(3) / MOST_TRIANGLES) * frame.pixel:.2g} is the least"
+        raise ParameterError(f"edge_length: expected at most {MOST_TRIANGLES:,} triangles, found lengths for {number:.2g}{enough}")
 
 
 def conform(
@@ -214,4 +214,4 @@ def _wanted(z: Points, links: Links, sizes: Sizes) -> Floats:
         wanted = np.minimum(wanted, by_thickness(z, links, longest, sizes.elements_across))
     if sizes.segments_per_turn is not None:
         wanted = np.minimum(wanted, by_curvature(z, links, longest, sizes.segments_per_turn))
-    return np.asarray(np.maximum(wanted, sizes.shortest))
+    return np.asarray(np.maximum(wanted, max(sizes.shortest, LEAST_PIECE)))

@@ -23,7 +23,7 @@ from shapely import MultiPolygon, get_parts
 from img2tri.errors import ImageError, MeshError, choice, finite, integer
 from img2tri.records import Bools, Floats, Frame, Ints, Made
 from img2tri.shapes.contours import contour_polygon, external_contours
-from img2tri.shapes.grid import mask_filter, structured_grid
+from img2tri.shapes.grid import MOST_POINTS, mask_filter, structured_grid
 from img2tri.shapes.poisson import poisson_disk
 from img2tri.shapes.spreading import spread_evenly
 from img2tri.triangles.smoothing import uniform
@@ -90,7 +90,9 @@ def structured_mesh(mask: ArrayLike, *, step: float = PAPER_STEP, pixel: tuple[f
     try:
         hull = delaunay(points)
     except MeshError as error:
-        raise ImageError(f"mask: expected a white zone with a triangle of grid points, found none at step {length:g}: {error}") from error
+        raise ImageError(
+            f"mask: expected a white zone with a triangle of grid points, found none at step {length:g}; make step smaller ({error})"
+        ) from error
     inside = centroid_filter(points, hull, MultiPolygon([part for polygon in polygons for part in get_parts(polygon)]))
     if len(inside) == 0:
         raise ImageError(f"mask: expected a white zone wider than step, found no triangle at step {length:g}; make it smaller")
@@ -150,8 +152,8 @@ def unstructured_mesh(
     contour_mesh = partial(
         _contour_mesh,
         edge_length=length,
-        n_boundary=None if n_boundary_points is None else integer("n_boundary_points", n_boundary_points, least=3),
-        n_interior=None if n_interior_points is None else integer("n_interior_points", n_interior_points),
+        n_boundary=None if n_boundary_points is None else integer("n_boundary_points", n_boundary_points, least=3, most=MOST_POINTS),
+        n_interior=None if n_interior_points is None else integer("n_interior_points", n_interior_points, most=MOST_POINTS),
         min_distance=CLOSENESS * length if min_distance is None else min_distance,
         min_distance_to_boundary=CLOSENESS * length if min_distance_to_boundary is None else min_distance_to_boundary,
     )

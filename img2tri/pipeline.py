@@ -170,7 +170,7 @@ def mesh_image(
     >>> mesh.report.kept, mesh.quality().summary()["min_angle"]["min"] >= 30
     (True, True)
     """
-    tell = progress or _silent
+    tell = progress or (lambda *_: None)
     choice("recipe", recipe, RECIPES)
     names = checked_names(names)
     labels = labels if labels is None or isinstance(labels, bool) else picked(labels)
@@ -199,7 +199,7 @@ def mesh_image(
     tell("outlines", 0.2)
     outlines, links = trace_outlines(zones, frame, connectivity=connectivity, corners=corners, outline=outline)
     if len(outlines.labels) == 1:
-        raise ImageError(f"image: expected pixels to mesh, found none{_advice(zones.threshold)}")
+        raise ImageError(f"image: expected pixels to mesh, found none{_advice(zones.threshold, removed['pixels'])}")
     for named in names:
         if named not in outlines.labels[1:]:
             raise ParameterError(f"names: expected labels of the image, found {named}; it has {outlines.labels[1:21].tolist()}")
@@ -284,8 +284,10 @@ def _check_paper_options(recipe: str, paper: PaperOptions) -> None:
         raise ParameterError(f"{name}: not an option of recipe {recipe!r}; leave it out, or choose another recipe")
 
 
-def _advice(level: Level | None) -> str:
+def _advice(level: Level | None, removed: int) -> str:
     """Say in an error where it was looked."""
+    if removed:
+        return f"; {removed} were removed as too small; lower min_area="
     if level is None:
         return ", only background; see background="
     return f" above the threshold {level.value:g} ({level.how}); try another threshold=, or invert=True"
@@ -294,7 +296,3 @@ def _advice(level: Level | None) -> str:
 def _expected_areas(zones: Zones, outlines: Outlines, links: Links) -> Floats:
     """Area each region should have: that of its pixels, or, where gray values place the outlines, that within them."""
     return pixel_areas(links) if zones.gray is None else enclosed_areas(outlines)
-
-
-def _silent(stage: str, fraction: float) -> None:
-    """Report to nobody."""

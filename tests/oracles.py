@@ -212,5 +212,6 @@ def topologies(triangles, keys):
     graph = sparse.coo_array((np.ones(len(edge)), (triangle, len(triangles) + edge.ravel())), shape=(len(triangles) + len(own_edges),) * 2)
     _, part = sparse.csgraph.connected_components(graph, directed=False)
     components = np.bincount(keys[np.unique(part[: len(triangles)], return_index=True)[1]], minlength=size)
-    euler = np.bincount(own_vertices[:, 1], minlength=size) - np.bincount(own_edges[:, 2], minlength=size) + np.bincount(keys, minlength=size)
+    vertices, edges, faces = (np.bincount(owner, minlength=size) for owner in (own_vertices[:, 1], own_edges[:, 2], keys))
+    euler = vertices - edges + faces
     return components, components - euler

@@ -8,6 +8,7 @@ NIfTI come through pydicom and nibabel.
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Sequence
 from pathlib import Path
@@ -20,6 +21,7 @@ from img2tri.records import Frame, Picture
 
 Pair = tuple[float, float]
 
+FINEST = 1e-4  # px: how exact places in the world must be
 CARRY_SPACING = ("DICOM", "NIfTI")  # formats made to say how large a pixel is
 
 
@@ -98,7 +100,14 @@ def read(
     if isinstance(spacing, str):
         notes["spacing"] = spacing
     h, w = values.shape[:2]
-    return Picture(values, Frame((h, w), size, corner, upward), source, notes)
+    frame = Frame((h, w), size, corner, upward)
+    if math.ulp(max(map(abs, frame.bounds))) > FINEST * frame.pixel:
+        raise ParameterError(
+            f"origin: expected a corner within {FINEST / math.ulp(1.0) * frame.pixel:.0e} of 0 for pixels of {frame.pixel:g}, "
+            f"found {corner}; "
+            "beyond, numbers of 64 bits have no places for the vertices. Move the mesh afterwards"
+        )
+    return Picture(values, frame, source, notes)
 
 
 def _spacing(spacing: float | Sequence[float] | str | None, noted: Pair | None, source: str) -> Pair:
@@ -111,7 +120,11 @@ def _spacing(spacing: float | Sequence[float] | str | None, noted: Pair | None, 
             raise ParameterError(f"spacing: 'file' expected a resolution with a unit in {source!r}, found none; give the size of a pixel")
         return noted
     dx, dy = _pair("spacing", spacing) if _is_sequence(spacing) else (spacing, spacing)
-    return finite("spacing", dx, above=0), finite("spacing", dy, above=0)
+    size = finite("spacing", dx, above=0), finite("spacing", dy, above=0)
+    if not 1e-100 <= min(size) <= max(size) <= 1e100:
+        # Squares of lengths and their sums must be numbers too.
+        raise ParameterError(f"spacing: expected numbers from 1e-100 to 1e100, found {shown(spacing)}; choose another unit")
+    return size
 
 
 def _corner(origin: str | Sequence[float]) -> tuple[Pair, bool]:

@@ -71,7 +71,7 @@ def length_field(
     """
     if isinstance(wanted, (str, float, int, np.number)):
         return frame.length(name, wanted) / frame.pixel, None
-    if not (isinstance(wanted, (Mapping, np.ndarray)) or callable(wanted)):
+    if not isinstance(wanted, (Mapping, np.ndarray)) and (not callable(wanted) or isinstance(wanted, type)):
         raise ParameterError(f"{name}: expected a length, lengths by label, an array or a function, found {type(wanted).__name__}")
     width, height = frame.plane(0 if frame.upward else frame.shape[0], frame.shape[1])
     cell = max(1.0, float(np.sqrt(width * height / CELLS)))
@@ -84,10 +84,12 @@ def length_field(
             raise ParameterError(f"{name}: expected the function to return ({len(places)},) lengths, found shape {lengths.shape}")
     else:
         rows, columns = (np.clip(v.astype(np.int64), 0, n - 1) for v, n in zip(frame.row_column(places), frame.shape, strict=True))
-        lengths = _by_label(name, wanted, frame, labels) if isinstance(wanted, Mapping) else np.asarray(wanted, np.float64)
+        lengths = _by_label(name, wanted, frame, labels) if isinstance(wanted, Mapping) else np.asarray(wanted)
         if lengths.shape != frame.shape:
             raise ParameterError(f"{name}: expected an array of the shape of the image {frame.shape}, found {lengths.shape}")
-        lengths = lengths[rows, columns]
+        if lengths.dtype.kind not in "iuf":
+            raise ParameterError(f"{name}: expected an array of numbers, found {lengths.dtype}")
+        lengths = np.asarray(lengths[rows, columns], np.float64)
     if not (np.isfinite(lengths).all() and (lengths > 0).all()):
         raise ParameterError(f"{name}: expected lengths above 0 everywhere, found {lengths.min():g} to {lengths.max():g}")
     grid = _limited(lengths.reshape(ny, nx) / frame.pixel, gradation * cell)

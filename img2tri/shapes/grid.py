@@ -15,6 +15,8 @@ from numpy.typing import ArrayLike
 from img2tri.errors import ImageError, ParameterError, finite, integer
 from img2tri.records import Bools, Floats
 
+MOST_POINTS = 10_000_000
+
 
 def structured_grid(shape: tuple[int, int], *, step: float | tuple[float, float] = 10) -> Floats:
     """Lay a square grid of points over an image.
@@ -51,6 +53,8 @@ def structured_grid(shape: tuple[int, int], *, step: float | tuple[float, float]
         raise ParameterError(f"shape: expected (rows, columns), found {shape!r}")
     height, width = (integer("shape", n) for n in shape)
     across, down = (finite("step", length, above=0) for length in (step if isinstance(step, tuple) else (step, step)))
+    if width / across * (height / down) > MOST_POINTS:
+        raise ParameterError(f"step: expected a grid of at most {MOST_POINTS:,} points, found {across:.3g} for {width} x {height} pixels")
     x, y = np.meshgrid(np.arange(0, width, across, dtype=np.float64), np.arange(0, height, down, dtype=np.float64))
     return np.stack([x.ravel(), y.ravel()], axis=1)
 

@@ -15,7 +15,8 @@ from img2tri.shapes.cracks import NODE, changes, find_cracks
 
 OUTSIDE = -1
 NOTHING = frozenset({0, OUTSIDE})
-LABELS = specimens.ALL | {"random": np.random.default_rng(2).integers(0, 4, (9, 11)), "random mask": np.random.default_rng(3).integers(0, 2, (12, 9))}
+RANDOM = {"random": np.random.default_rng(2).integers(0, 4, (9, 11)), "random mask": np.random.default_rng(3).integers(0, 2, (12, 9))}
+LABELS = specimens.ALL | RANDOM
 
 
 def numbers(labels, background=0):
