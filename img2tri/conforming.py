@@ -126,7 +126,7 @@ def wanted_sizes(
 
 def _check_number(longest: float, field: Field | None, area: float, frame: Frame) -> None:
     """Refuse lengths that would take more triangles than there is memory for, before any of it is used."""
-    lengths = np.maximum(longest if field is None else field.grid, 1e-100)
+    lengths = np.clip(longest if field is None else field.grid, 1e-100, 1e100)
     number = 4 / math.sqrt(3) * float((1 / lengths**2).mean()) * (area if field is None else field.grid.size * field.cell**2)
     if number > MOST_TRIANGLES:
         enough = f"; of one length for all, {math.sqrt(area * 4 / math.sqrt(3) / MOST_TRIANGLES) * frame.pixel:.2g} is the least"
@@ -200,7 +200,7 @@ def _spaced(outlines: Outlines, links: Links, sizes: Sizes, tolerance: float, ke
         if (shorter > 0.99 * wanted).all():
             break
         wanted = shorter
-        coarse = settle(draft(outlines, links, spacing=wanted, keep_corners=keep_corners), tolerance=tolerance)
+        coarse = settle(draft(outlines, links, spacing=wanted, keep_corners=keep_corners, settled=coarse), tolerance=tolerance)
     return coarse
 
 

@@ -16,11 +16,11 @@ Measured on a disc of radius 150 px (Poisson's equation; edge lengths 10, 20, 40
     area kept, middles on the outline                    0.061 / 0.064        0.043 / 0.048         0.166 / 0.190
     area kept, sides that keep the area of their run     0.006 / 0.001        0.014 / 0.004         0.026 / 0.021
     on the outline, straight sides                       0.192 / 0.193        0.154 / 0.152         0.576 / 0.615
-    on the outline, middles on it (this module)          0.006 / 0.001        0.013 / 0.002         0.013 / 0.002
+    on the outline, middles on it (this module)          0.006 / 0.001        0.012 / 0.002         0.012 / 0.002
     =================================================== ==================== ===================== =====================
 
-What is left is the error of the outline itself. Without smoothing the greatest error of the gradient is 22 % of its maximum for a mask at
-an edge length of 4 px, twice that of straight sides; with it, 2 %.
+What is left is the error of the outline itself. The greatest error of the gradient at an edge length of 4 px is 22 % of its maximum for a
+mask and 6 % for a gray image if sides follow the outline as it is, twice that of straight sides; smoothed, 8 % and 0.7 %.
 """
 
 from __future__ import annotations
@@ -248,7 +248,10 @@ def smoothed(outlines: Outlines) -> Points:
         long = size > 6 * scale
         if not long.any():
             break
-        kernel, near = unshrinking(scale), int(np.ceil(2 * scale))
+        # What the kernel does to its own leftover is added too: arcs of small radius keep it.
+        once, near = unshrinking(scale), int(np.ceil(2 * scale))
+        kernel = -np.convolve(once, once)
+        kernel[len(once) // 2 : -(len(once) // 2)] += 2 * once
         line = Unrolled(outlines.indices, outlines.starts, rings, long, len(kernel) // 2 + 2 * near)
         before = line.points(z)
         curve = convolve(before, kernel)

@@ -147,3 +147,120 @@ def flipped(data, rng):
     else:
         bytes_[at:at] = bytes_[at : at + int(rng.integers(1, 40))]
     return bytes(bytes_)
+
+
+@pytest.fixture(autouse=True)
+def _in_a_folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+def test_sound_files_are_read():
+    outcomes = check("test_hostile_images:mesh_file", list(FORMATS.values()))
+    for name, outcome in zip(FORMATS, outcomes, strict=True):
+        signed = any(word in name for word in ("int8", "int32", "int64", "interlaced"))
+        assert outcome.kind == ("refused" if signed else "done"), (name, outcome)
+
+
+def damaged(cuts, flips, seed=1):
+    for k, (suffix, data) in enumerate(FORMATS.values()):
+        rng = np.random.default_rng([seed, k])
+        yield from ((suffix, data[:cut]) for cut in range(0, len(data), max(1, len(data) // cuts)))
+        yield from ((suffix, flipped(data, rng)) for _ in range(flips))
+
+
+@pytest.mark.parametrize(("cuts", "flips"), [(6, 12), pytest.param(1000, 3000, marks=pytest.mark.slow)])
+def test_damaged_files_end_in_a_mesh_or_an_error(cuts, flips):
+    check("test_hostile_images:mesh_file", list(damaged(cuts, flips)))
+
+
+COLOURS = [(0, d) for d in (1, 2, 4, 8, 16)] + [(2, 8), (2, 16), (4, 8), (4, 16), (6, 8), (6, 16)]
+PALETTE = [chunk(b"PLTE", bytes(range(48)) * 16)]
+
+
+def test_every_kind_of_png():
+    sound = [(".png", png(depth=d, colour=c, interlace=i, rows=bytes(9000) if i else None)) for c, d in COLOURS for i in (0, 1)]
+    sound += [(".png", png(depth=d, colour=3, chunks=[chunk(b"PLTE", bytes(range(3 * 2**d))[: 3 * 2**d]), chunk(b"tRNS", b"\0\x80")]))
+              for d in (1, 2, 4)]  # fmt: skip
+    wrong = [
+        png(depth=3), png(depth=0), png(depth=255), png(colour=1), png(colour=7), png(interlace=2), png(0, 24), png(24, 0),
+        png(colour=3), png(chunks=PALETTE), png(idat=[]), png(idat=[b""]), png(idat=[b"", zlib.compress(bytes(600))]),
+        png(idat=[b"\0"]), png(end=False), png(chunks=[chunk(b"tRNS", b"")]), png(chunks=[chunk(b"tRNS", bytes(999))]),
+        png(chunks=[chunk(b"gAMA", bytes(4), crc=0)]), png(chunks=[chunk(b"pHYs", bytes(9))]), png(chunks=[chunk(b"pHYs", b"\xff" * 9)]),
+        png(chunks=[chunk(b"eXIf", b"II*\0" + b"\xff" * 40)]), png(chunks=[chunk(b"IHDR", bytes(13))]),
+        png(chunks=[chunk(b"\0\0\0\0", b"")]),
+        png(chunks=[chunk(b"iCCP", b"a\0\0" + zlib.compress(bytes(10**7)))]),
+        png(chunks=[chunk(b"zTXt", b"a\0\0" + zlib.compress(bytes(10**8)))]),
+    ]  # fmt: skip
+    outcomes = check("test_hostile_images:mesh_file", [*sound, *((".png", data) for data in wrong)])
+    assert not any("damaged" in outcome.text for outcome in outcomes[: len(sound)])
+
+
+def bombs():
+    info = struct.Struct("<IiiHHIIiiII")
+    for side in (2**31 - 1, 16000):
+        yield ".png", png(side, side, idat=[zlib.compress(bytes(1000))])
+        yield ".png", png(side, side, depth=16, colour=6, idat=[zlib.compress(bytes(1000))])
+        yield ".bmp", b"BM" + struct.pack("<IHHI", 100, 0, 0, 54) + info.pack(40, side, side, 1, 24, 0, 0, 0, 0, 0, 0) + bytes(100)
+        yield ".pgm", b"P5 %d %d 255\n" % (side, side) + bytes(99)
+    head = struct.pack("<HHBBB", 8, 8, 0, 0, 0)
+    frame = b"," + struct.pack("<HHHHB", 0, 0, 65535, 65535, 0) + b"\x02\x02\x4c\x01\0;"
+    yield ".gif", b"GIF89a" + head + frame
+    yield ".gif", b"GIF89a" + struct.pack("<HHBBB", 65535, 65535, 0, 0, 0) + frame
+    yield ".png", png(8, 8, idat=[zlib.compress(bytes(2 * 10**8), 9)])
+
+
+def test_bombs_are_refused_before_they_are_unpacked():
+    outcomes = check("test_hostile_images:mesh_file", list(bombs()), memory=children.GIGABYTE)
+    assert all(outcome.seconds < 5 for outcome in outcomes)
+    assert sum("max_pixels" in outcome.text for outcome in outcomes) >= 8
+
+
+def test_paths_that_are_no_images():
+    os.mkfifo("pipe.png")
+    Path("folder.png").mkdir()
+    Path("loop.png").symlink_to("loop.png")
+    Path("dangling.png").symlink_to("nowhere")
+    Path("empty.png").write_bytes(b"")
+    Path("text.png").write_text("not an image" * 99)
+    np.save("array.npy", DISC)
+    names = ["pipe.png", "folder.png", "loop.png", "dangling.png", "empty.png", "text.png", "array.npy"]
+    names += ["x" * 300 + ".png", "nul\0.png", "", "/dev/zero", "/dev/null", "/dev/random", "/proc/self/mem"]
+    outcomes = check("test_hostile_images:mesh_path", [(name, {}) for name in names])
+    assert [outcome.text.partition(":")[0] for outcome in outcomes] == ["FileError"] * len(names)
+
+
+def test_an_image_above_the_limit_of_pillow_is_read(tmp_path):
+    import tifffile
+
+    image = np.zeros((10000, 9000), np.uint8)
+    image[100:300, 100:400] = 255
+    tifffile.imwrite(tmp_path / "large.tif", image, compression="zlib")
+    limit = Image.MAX_IMAGE_PIXELS
+    assert len(mesh_image(tmp_path / "large.tif").triangles) > 100
+    assert limit == Image.MAX_IMAGE_PIXELS
+    with pytest.raises(ImageError, match="max_pixels"):
+        mesh_image(tmp_path / "large.tif", max_pixels=10**6)
+
+
+def test_part_of_an_image_is_never_taken_for_the_whole():
+    whole = saved(picture("RGB").resize((200, 200)), "JPEG")
+    Path("part.jpg").write_bytes(whole[: len(whole) // 2])
+    with pytest.raises(FileError, match="truncated"):
+        mesh_image("part.jpg")
+
+
+def photo():
+    y, x = np.mgrid[:1000, :1500]
+    noise = np.random.default_rng(0).normal(0, 30, (1000, 1500))
+    return np.clip(128 + 60 * np.sin(x / 200) + 50 * np.cos(y / 130) + noise, 0, 255).astype(np.uint8)
+
+
+def mesh_photo(options):
+    return len(mesh_image(photo(), **options).triangles)
+
+
+@pytest.mark.slow
+def test_a_noisy_photo_comes_back():
+    cleaned, default = children.run("test_hostile_images:mesh_photo", [{"min_area": "200px2"}, {}], seconds=300)
+    assert cleaned.kind == default.kind == "done"
+    assert cleaned.seconds < 30

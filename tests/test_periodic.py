@@ -53,9 +53,9 @@ def check(labels, periodic, *, background=0, **options):
 
 
 @pytest.mark.parametrize("periodic", ["x", "y", "xy"])
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(4))
 def test_maps_that_repeat(seed, periodic):
-    edge_length = [4, 5.5, 7, 9, 12, 16][seed]
+    edge_length = [4, 6, 9, 16][seed]
     check(blots(seed, (40, 57), 2 + seed % 3, 3), periodic, background=[None, 0][seed % 2], edge_length=edge_length)
     check(grains(seed, (60, 44), 3 + 3 * seed), periodic, edge_length=edge_length)
     check(wrapped(np.random.default_rng(seed).integers(0, 3, (9, 12))), periodic, background=None, edge_length=edge_length)
@@ -73,8 +73,7 @@ def test_many_maps_that_repeat(seed):
 @pytest.mark.parametrize("name", specimens.ALL)
 def test_specimens_side_by_side(name):
     tiled = wrapped(np.tile(specimens.ALL[name], (2, 2)))
-    for periodic in ("x", "y", "xy"):
-        check(tiled, periodic, edge_length=6)
+    check(tiled, "xy", edge_length=6)
 
 
 def test_one_pixel():
@@ -152,7 +151,7 @@ def test_a_mesh_made_without_has_no_pairs():
 def test_an_error_says_where_sides_differ():
     labels = grains(1, (20, 30), 5)
     labels[7, -1] = 99
-    with pytest.raises(ImageError, match=r"first and the last column, found \d+ and 99 in row 7 \(1 such\).*np\.pad\(image, \(\(0, 0\), \(0, 1\)\)"):
+    with pytest.raises(ImageError, match=r"last column, found \d+ and 99 in row 7 \(1 such\).*np\.pad\(image, \(\(0, 0\), \(0, 1\)\)"):
         mesh_image(labels, labels=True, periodic="x")
     labels = grains(1, (20, 30), 5)
     labels[0, [4, 9]] = 77

@@ -94,7 +94,7 @@ def test_sides_inside_and_on_the_frame_are_straight_with_their_node_in_the_middl
 
 
 @pytest.mark.parametrize("keep_area", [True, False])
-@pytest.mark.parametrize(("image", "off", "area_error"), [(MASK, 0.25, 1e-3), (GRAY, 0.08, 1e-4)])
+@pytest.mark.parametrize(("image", "off", "area_error"), [(MASK, 0.25, 1e-3), (GRAY, 0.2, 2e-4)])
 def test_curved_sides_lie_on_the_circle_and_keep_its_area(image, off, area_error, keep_area):
     for edge_length in (4, 10, 20):
         mesh = mesh_image(image, threshold=image.max() / 2, edge_length=edge_length, keep_area=keep_area)
@@ -167,7 +167,7 @@ def test_smoothing_moves_outlines_little_and_leaves_their_ends():
     assert (made != before).any()
 
 
-@pytest.mark.parametrize(("image", "most", "kink"), [(MASK, 1.5e-3, 0.05), (GRAY, 3e-4, 0.02)])
+@pytest.mark.parametrize(("image", "most", "kink"), [(MASK, 1.5e-3, 0.05), (GRAY, 1e-3, 0.03)])
 def test_poisson_on_a_disc(image, most, kink):
     """Energy and greatest error of the gradient, each against the exact solution; straight sides are much worse in the first."""
     fem = pytest.importorskip("skfem")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from img2tri.errors import ImageError, ParameterError
+from img2tri.errors import ImageError, ParameterError, shown
 from img2tri.raster.checking import Pixels
 from img2tri.raster.tags import Size
 
@@ -16,7 +16,7 @@ Decoded = tuple[Pixels, dict[str, Any], Size | None]
 def check_page(path: Path, page: int, pages: int, width: int, height: int, max_pixels: int) -> dict[str, Any]:
     """Check page and size before anything is decoded, and note the page."""
     if page >= pages:
-        raise ParameterError(f"page: expected 0 to {pages - 1} in {str(path)!r}, found {page}")
+        raise ParameterError(f"page: expected 0 to {pages - 1} in {str(path)!r}, found {shown(page)}")
     if width * height > max_pixels:
         raise ImageError(
             f"image: expected at most max_pixels={max_pixels} pixels, found {width} x {height} in {str(path)!r}; "

@@ -91,7 +91,7 @@ def read(
     else:
         source, noted = "array", None
         if page:
-            raise ParameterError(f"page: expected 0 for an array, which is one image, found {page}")
+            raise ParameterError(f"page: expected 0 for an array, which is one image, found {shown(page)}")
         values = image
     values = pixels(values)
     if spacing is None and noted is not None and notes.get("format") in CARRY_SPACING:

@@ -85,7 +85,7 @@ def find_zones(
         # Strictly greater is foreground: of whole numbers the level lies between two.
         whole = np.issubdtype(gray.dtype, np.integer)
         return Zones(mask, 0, chosen, gray, float(np.floor(chosen.value)) + 0.5 if whole else chosen.value)
-    return Zones(mask, 0, chosen, gray if chosen.how == "otsu" else None)
+    return Zones(mask, 0, chosen, gray if chosen.how == "otsu" and not _two_valued(gray) else None)
 
 
 def cleaned(zones: Zones, *, min_area: float | None, largest: bool, connectivity: int) -> tuple[Zones, Removed]:

@@ -6,7 +6,7 @@ where the lines meet: as exact as the lines are long, and not where a smooth cur
 
 How long is long? On a circle of radius R, pixels allow a straight line no longer than sqrt(8 R) px, and two such lines meet at
 an angle of no more than 8 / length. A sharper turn is a corner. Sides along the rows and columns of the image are straight
-without any doubt, so for them three pixels will do.
+without any doubt, so for them four pixels will do.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from img2tri.shapes.unrolling import Points, Unrolled, cross
 LENGTHS = (3, 4, 6, 8, 12, 16, 24, 32)  # crossings that a line is fitted to
 ROUND = 11.0  # px: lines of this length may meet at one radian on a circle, with some margin
 SHORTEST = 6.0  # px, the least length of a line that is not along rows or columns
+ALIGNED = 3.9  # px, the least length of one that is
 EXACT = 1e-6  # px, greatest distance of crossings from a line along rows or columns
 SLOPPY = 0.05  # of the link: how far a line may miss the range of a crossing
 BEYOND = 1.8  # of the room in its block: how far out a corner may lie, it is then put back into the block
@@ -68,6 +69,7 @@ def find_corners(s: Sliding, heads: Points, room: complex) -> tuple[Ints, Points
             score[better], off[better] = new[better], away[better]
     sharp = np.flatnonzero(score)
     best = sharp[_best_nearby(at[sharp], score[sharp])]
+    best = best[~_again(s, line.source[at[best]])]
     off = np.clip(off.real, -room.real, room.real) + 1j * np.clip(off.imag, -room.imag, room.imag)
     return line.source[at[best]], (heads[line.source[at]] + off)[best]
 
@@ -77,7 +79,7 @@ def _meeting(back: _Lines, ahead: _Lines) -> tuple[Floats, Points]:
     turn = np.abs(np.angle(-ahead.direction * back.direction.conj()))
     length = np.minimum(back.length, ahead.length)
     sharp = (length >= SHORTEST) & (turn * length >= ROUND)
-    sharp |= (back.miss < EXACT) & (ahead.miss < EXACT) & (turn > 1.5) & (turn < 1.7)
+    sharp |= (back.miss < EXACT) & (ahead.miss < EXACT) & (turn > 1.5) & (turn < 1.7) & (length >= ALIGNED)
     meet = cross(back.direction, ahead.direction)
     sharp &= np.abs(meet) > 1e-3
     place = back.point + back.direction * cross(ahead.point - back.point, ahead.direction) / np.where(sharp, meet, 1)
@@ -130,6 +132,18 @@ def _longest_line(s: Sliding, line: Unrolled, z: Points, usable: NDArray[np.bool
         if not len(going):
             break
     return best
+
+
+def _again(s: Sliding, crossings: Ints) -> Bools:
+    """Tell which corners, at the end of a ring, are those at its beginning once more."""
+    entry = np.zeros(len(s.points), np.int64)
+    entry[s.indices[::-1]] = np.arange(len(s.indices))[::-1]
+    at = entry[crossings]
+    chain = np.searchsorted(s.starts, at, side="right") - 1
+    first = np.full(len(s.rings), len(s.indices))
+    np.minimum.at(first, chain, at)
+    round_trip = first[chain] + np.diff(s.starts)[chain] - 1 - at
+    return np.asarray(s.rings[chain] & (round_trip <= SAME) & (first[chain] != at))
 
 
 def _best_nearby(at: Ints, score: Floats) -> Bools:

@@ -61,7 +61,7 @@ def widest_fit(s: Sliding) -> Floats:
         if not long.any():
             break
         kernel = unshrinking(scale)
-        line = Unrolled(s.indices, s.starts, s.rings, long, len(kernel) // 2)
+        line = Unrolled(s.indices, s.starts, s.rings, long, len(kernel) // 2 + 1)
         curve = convolve(line.points(s.points), kernel)
         slope = np.gradient(curve)
         length = np.maximum(np.abs(slope), 1e-9)

@@ -10,6 +10,7 @@ Points of the plane are complex numbers here, x + iy, in units of a pixel.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -66,7 +67,7 @@ class Links:
     pixel: complex
     swept: Floats
 
-    @property
+    @cached_property
     def chain(self) -> Ints:
         """(k,) the chain of each entry of `indices`."""
         return np.repeat(np.arange(len(self.rings)), np.diff(self.starts))

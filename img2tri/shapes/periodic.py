@@ -94,6 +94,14 @@ class Twins:
         result[self.one] = result[self.other] = np.minimum(lengths[self.one], lengths[self.other])
         return result
 
+    def alike(self, outlines: Outlines) -> Outlines:
+        """Put the points of dense outlines on opposite sides at the same places: half-way between where the two were."""
+        points = outlines.points.copy()
+        one, other = outlines.indices[self.one], outlines.indices[self.other]
+        along = 1 - self.axis
+        points[one, along] = points[other, along] = (outlines.points[one, along] + outlines.points[other, along]) / 2
+        return replace(outlines, points=points)
+
     def settle(self, d: Draft, *, tolerance: float) -> Draft:
         """Settle outlines, see `img2tri.shapes.coarsening.settle`, with twins divided alike."""
         rounds = 0
@@ -122,16 +130,26 @@ class Twins:
         from_other = ~first if both else finer[stretch] & ~(first & second)
         chosen = first | second if both else np.where(from_other, second, first)
         points = d.outlines.indices
-        reset = d.reset[points[self.one]] | d.reset[points[self.other]]
-        # Points on the frame go back to where they were before they were moved.
-        along = np.where(reset, 0.0, np.where(from_other, self._along(d, self.other), self._along(d, self.one)))
+        reset_one, reset_other = d.reset[points[self.one]], d.reset[points[self.other]]
+        reset = reset_one | reset_other
+        # A point that went back towards the middle takes its twin with it.
+        from_other = np.where(reset, ~reset_one, from_other)
+        along = np.where(from_other, self._along(d, self.other), self._along(d, self.one))
         breaks, moved, back = d.breaks.copy(), d.moved.copy(), d.reset.copy()
         measured, tested = d.measured.copy(), d.tested.copy()
         way = np.where(self.axis == 0, 1j, 1)
         for entries in (self.one, self.other):
-            breaks[entries], moved[entries] = chosen, np.where(chosen, along, 0) * way
+            breaks[entries], moved[entries] = chosen, np.where(chosen | reset, along, 0) * way
             back[points[entries]] |= reset
             measured[entries] = tested[entries] = -1
+        # A junction on the side is in the chains from inside too.
+        sides = np.concatenate([self.one, self.other])
+        of_point = np.zeros(len(back), np.complex128)
+        of_point[points[sides]] = moved[sides]
+        touched = np.flatnonzero(np.isin(points, points[sides]) & (of_point[points] != moved))
+        if len(touched):
+            moved[touched] = of_point[points[touched]]
+            measured[:] = tested[:] = -1
         return replace(d, breaks=breaks, moved=moved, reset=back, measured=measured, tested=tested)
 
     def divided(self, chains: Outlines, vertices: Floats) -> Outlines:

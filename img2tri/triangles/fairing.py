@@ -23,7 +23,7 @@ import math
 
 import numpy as np
 
-from img2tri.errors import ParameterError, finite, integer
+from img2tri.errors import MeshError, ParameterError, finite, integer
 from img2tri.records import Bools, Floats, Ints
 from img2tri.triangles.topology import directed_curves
 
@@ -75,10 +75,14 @@ def fair_curves(
     tolerance = finite("tolerance", tolerance, least=0)
     passes = integer("iterations", iterations)
     edges = directed_curves(triangles, regions)
+    if len(edges) == 0 or passes == 0:
+        return vertices.copy()
     used, local = np.unique(edges, return_inverse=True)
     start, local = vertices[used], local.reshape(-1, 2)
     lengths = np.linalg.norm(start[local[:, 1]] - start[local[:, 0]], axis=1)
     mean = float(lengths.mean())
+    if not 1e-100 < mean < 1e100:
+        raise MeshError(f"vertices: expected edges of a length between 1e-100 and 1e100 on the boundary, found {mean:g} on average")
     width = max(24 * tolerance, 4 * mean) if width is None else finite("width", width, above=0)
 
     limits = _limits(start, local, min(tolerance, mean))

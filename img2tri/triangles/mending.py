@@ -3,7 +3,7 @@
 In: a mesh and the network it was made of. Out: the mesh with its bad places replaced. Only a *patch*, some rings of triangles around
 the bad ones, is triangulated anew, with its rim and the segments in it as constraints. Refinement may split a segment that has
 nothing but the patch on its sides. If it splits another edge of the rim, the neighbours outside do not fit: then the patch is made
-larger.
+larger there.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from img2tri.triangles.lattice import Complex
 from img2tri.triangles.network import Network
 from img2tri.triangles.relaxing import ANNEAL, relaxed, smallest_angles, touched
 
-RINGS = (3, 6, 12, 24, 1_000_000)  # how far patches reach, one after the other
+RINGS = (3, 3, 6, 12, 24, 1_000_000)  # how far patches reach around bad triangles, then around edges of the rim that were split
 SHORTEST = 0.05  # no edge becomes shorter than about this times the shortest segment in the patch
 
 
@@ -31,15 +31,20 @@ def mended(
     bad = smallest_angles(vertices, triangles) < min_angle
     if not bad.any():
         return vertices, triangles, codes
+    patch, cause = np.zeros(len(triangles), bool), bad
     for rings in RINGS:
-        patch = _grown(bad, triangles, rings)
+        patch = patch | _grown(cause, triangles, rings)
         inside, local = np.unique(triangles[patch], return_inverse=True)
         walls, splittable = _walls(vertices[inside], inside, local.reshape(-1, 3), codes[patch], network, own)
         net = refine(pairs(walls.points), walls.segments, walls.left, walls.right, min_angle, SHORTEST * walls.lengths.min())
-        if splittable[np.bincount(net.origin) > 1].all():
+        torn = (np.bincount(net.origin) > 1) & ~splittable
+        if not torn.any():
             break
         if patch.all():
             return None
+        ends = np.zeros(len(vertices), bool)
+        ends[inside[walls.segments[torn]]] = True
+        cause = touched(triangles, ends)
     places = net.vertices[:, 0] + 1j * net.vertices[:, 1]
     free = np.ones(len(places), bool)
     free[net.segments] = False

@@ -1,7 +1,8 @@
 """A file is whole or it is not there: bytes -> a file, checked before the work and put in place after it.
 
 The bytes go to a new file beside the target, which then takes the target's name in one step. Whatever goes wrong before that step leaves an
-older file as it was, and nothing beside it.
+older file as it was, and nothing beside it. Where the system knows files without a name (Linux), the new one has none until it is whole, so
+that not even a process that is killed leaves one.
 """
 
 from __future__ import annotations
@@ -12,8 +13,9 @@ import shutil
 from collections.abc import Collection
 from contextlib import suppress
 from pathlib import Path
+from typing import IO
 
-from img2tri.errors import FileError
+from img2tri.errors import FileError, shown
 
 
 def writable(path: str | os.PathLike[str], suffixes: Collection[str]) -> Path:
@@ -41,7 +43,13 @@ def writable(path: str | os.PathLike[str], suffixes: Collection[str]) -> Path:
     img2tri.errors.FileError: femur.docx: expected a name that ends in .ply or .stl, found '.docx'
     """
     known_suffix(path, suffixes)
-    target = Path(os.path.realpath(path))
+    try:
+        target = Path(os.path.realpath(path))
+        with suppress(FileNotFoundError, NotADirectoryError):
+            os.stat(target)
+    except (OSError, ValueError) as problem:
+        # A name too long or with a zero byte in it, or a link to itself.
+        raise FileError(f"{shown(os.fspath(path))}: cannot be written: {getattr(problem, 'strerror', None) or problem}") from problem
     if not target.parent.is_dir():
         raise FileError(f"{path}: expected an existing folder, found none at {target.parent}; make it first")
     if not os.access(target.parent, os.W_OK | os.X_OK):
@@ -73,10 +81,14 @@ def store(target: Path, data: bytes) -> None:
     """
     temporary = target.with_name(f".img2tri-{secrets.token_hex(8)}.tmp")
     try:
-        with open(temporary, "xb") as file:
+        nameless = _nameless(target.parent)
+        with nameless or open(temporary, "xb") as file:
             file.write(data)
             file.flush()
             os.fsync(file.fileno())
+            if nameless:
+                # os.link follows the link that stands for the open file only where a folder is named.
+                os.link(f"/proc/self/fd/{file.fileno()}", temporary, src_dir_fd=file.fileno())
         if target.exists():
             shutil.copymode(target, temporary)
         os.replace(temporary, target)
@@ -86,3 +98,11 @@ def store(target: Path, data: bytes) -> None:
         # After the last step above there is nothing left to remove.
         with suppress(OSError):
             temporary.unlink()
+
+
+def _nameless(folder: Path) -> IO[bytes] | None:
+    """Open a file without a name in `folder`; None where there is no such thing."""
+    if hasattr(os, "O_TMPFILE") and os.path.isdir("/proc/self/fd"):
+        with suppress(OSError):
+            return os.fdopen(os.open(folder, os.O_TMPFILE | os.O_WRONLY, 0o666), "wb")
+    return None
