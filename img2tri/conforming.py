@@ -19,11 +19,12 @@ from img2tri.errors import ParameterError, finite
 from img2tri.raster.zones import Zones
 from img2tri.records import Floats, Frame, Made, Outlines
 from img2tri.shapes.areas import area_error, keep_areas
-from img2tri.shapes.coarsening import refine, settle
+from img2tri.shapes.coarsening import refine
 from img2tri.shapes.cracks import find_cracks
 from img2tri.shapes.drafts import Draft, draft
 from img2tri.shapes.fields import EdgeLength, Field, length_field
 from img2tri.shapes.links import Links, pixel_areas
+from img2tri.shapes.periodic import FILLINGS, Twins, find_twins
 from img2tri.shapes.placing import place, place_on_sides
 from img2tri.shapes.sizing import by_curvature, by_pieces, by_thickness, limit_growth
 from img2tri.shapes.unrolling import Points
@@ -37,7 +38,7 @@ ATTEMPTS = 12  # rounds of refining the outlines; two are the most that ordinary
 
 
 def trace_outlines(
-    zones: Zones, frame: Frame, *, connectivity: int = 4, corners: str = "auto", outline: str = "smooth"
+    zones: Zones, frame: Frame, *, connectivity: int = 4, corners: str = "auto", outline: str = "smooth", periodic: str | None = None
 ) -> tuple[Outlines, Links]:
     """Trace the outlines of all regions of a label map, as fine as the pixels.
 
@@ -53,11 +54,14 @@ def trace_outlines(
         "round" smooths them as all else.
     outline
         "smooth", or "pixel": exactly along the sides of pixels.
+    periodic
+        "x", "y" or "xy": the points on these opposite sides are put at the same places; see `img2tri.shapes.periodic`.
     """
     cracks = find_cracks(zones.labels, background=zones.background, upward=frame.upward, connectivity=connectivity)
     if outline == "pixel":
         return place_on_sides(cracks, frame)
-    return place(cracks, frame, gray=zones.gray, level=zones.level, corners=corners != "round")
+    outlines, links = place(cracks, frame, gray=zones.gray, level=zones.level, corners=corners != "round")
+    return find_twins(outlines, links, periodic).alike(outlines), links
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,6 +146,7 @@ def conform(
     min_angle: float = 30.0,
     corners: str = "auto",
     keep_area: bool = True,
+    periodic: str | None = None,
     seed: int = 0,
     progress: Callable[[str, float], object] | None = None,
 ) -> Made:
@@ -152,20 +157,25 @@ def conform(
 
     tell = progress or (lambda *_: None)
     tell("spacing", 0.3)
-    coarse = _spaced(outlines, links, sizes, tolerance, corners == "keep")
+    twins = find_twins(outlines, links, periodic)
+    coarse = _spaced(outlines, links, twins, sizes, tolerance, corners == "keep")
     for _ in range(AREA_ROUNDS if keep_area else 0):
         if area_error(coarse) <= AREA_ERROR:
             break
-        coarse = settle(keep_areas(coarse, tolerance=tolerance), tolerance=tolerance)
+        coarse = twins.settle(keep_areas(coarse, tolerance=tolerance), tolerance=tolerance)
     for attempt in range(ATTEMPTS):
         tell("triangles", 1 - 0.6 * 0.7**attempt)
         chains = coarse.coarse()
-        segments, left, right = chains.segments
         try:
-            vertices, triangles, regions = fill(
-                chains.points, segments, left, right, edge_length=sizes.longest, min_angle=min_angle,
-                gradation=sizes.gradation, size=sizes.field, seed=seed,
-            )  # fmt: skip
+            for _ in range(FILLINGS):
+                segments, left, right = chains.segments
+                vertices, triangles, regions = fill(
+                    chains.points, segments, left, right, edge_length=sizes.longest, min_angle=min_angle,
+                    gradation=sizes.gradation, size=sizes.field, seed=seed,
+                )  # fmt: skip
+                filled, chains = chains, twins.divided(chains, vertices)
+                if chains is filled:
+                    break
             narrow = smallest_angles(vertices[:, 0] + 1j * vertices[:, 1], triangles) < min_angle - 1e-9
             if not narrow.any() or attempt == ATTEMPTS - 1:
                 break
@@ -176,9 +186,10 @@ def conform(
             doubtful = chains.points[segments[error.segments if len(error.segments) else slice(None)]].reshape(-1, 2)
         before = coarse
         coarse = refine(coarse, doubtful[:, 0] + 1j * doubtful[:, 1], within=1.0 + 0.5 * attempt, tolerance=tolerance)
-        coarse = settle(coarse, tolerance=tolerance)
+        coarse = twins.settle(coarse, tolerance=tolerance)
         if (coarse.breaks == before.breaks).all() and (coarse.reset == before.reset).all():
             break
+    twins.check(chains, vertices)
     counted = {"rounds": attempt + 1, "reset": int(coarse.reset.sum())}
     if sizes.shortest:
         first, last = coarse.pieces
@@ -186,21 +197,22 @@ def conform(
     return Made(vertices, triangles, regions, counted)
 
 
-def _spaced(outlines: Outlines, links: Links, sizes: Sizes, tolerance: float, keep_corners: bool) -> Draft:
+def _spaced(outlines: Outlines, links: Links, twins: Twins, sizes: Sizes, tolerance: float, keep_corners: bool) -> Draft:
     """Coarsen the outlines to the lengths wanted, spaced evenly.
 
     A first coarsening shows where pieces have to be shorter than wanted; a second, and if need be a third, spaces them evenly
     around these places.
     """
     z = (outlines.points[:, 0] + 1j * outlines.points[:, 1])[outlines.indices]
-    wanted = limit_growth(_wanted(z, links, sizes), z, links, sizes.gradation)
-    coarse = settle(draft(outlines, links, spacing=wanted, keep_corners=keep_corners), tolerance=tolerance)
+    wanted = twins.shared(limit_growth(_wanted(z, links, sizes), z, links, sizes.gradation))
+    coarse = twins.settle(draft(outlines, links, spacing=wanted, keep_corners=keep_corners), tolerance=tolerance)
     for _ in range(RESPACINGS):
-        shorter = limit_growth(by_pieces(coarse, wanted), z, links, sizes.gradation)
+        shorter = twins.shared(limit_growth(by_pieces(coarse, wanted), z, links, sizes.gradation))
         if (shorter > 0.99 * wanted).all():
             break
         wanted = shorter
-        coarse = settle(draft(outlines, links, spacing=wanted, keep_corners=keep_corners, settled=coarse), tolerance=tolerance)
+        again = draft(outlines, links, spacing=wanted, keep_corners=keep_corners, settled=None if len(twins.one) else coarse)
+        coarse = twins.settle(again, tolerance=tolerance)
     return coarse
 
 

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from trimesh import Scene, Trimesh
 
     from img2tri.report import Report
+    from img2tri.second_order import SecondOrder
     from img2tri.triangles.quality import Quality
     from img2tri.views.cells import Cells
     from img2tri.views.sets import Sets
@@ -105,6 +106,20 @@ class TriangleMesh:
         o = self.origin.outlines
         return region_polygons(replace(o, points=self.frame.world(o.points)))
 
+    @cached_property
+    def periodic_pairs(self) -> dict[str, Ints]:
+        """Vertices (k, 2) at the same place on opposite sides, "x": left and right, "y": bottom and top; as far as asked for."""
+        from img2tri.shapes.periodic import periodic_pairs
+
+        settings = self.origin.settings if self.origin else {}
+        return periodic_pairs(self.vertices, self.frame.bounds, settings.get("periodic"))
+
+    def second_order(self) -> SecondOrder:
+        """Return quadratic triangles, their sides curved along the outlines: corners, and a node in the middle of each side."""
+        from img2tri.second_order import second_order
+
+        return second_order(self.vertices, self.triangles, self.regions, self.frame, self.origin)
+
     def smoothed(
         self,
         method: str = "cotangent",
@@ -118,12 +133,10 @@ class TriangleMesh:
 
         Parameters
         ----------
-        method
+        method, iterations
             "uniform": each vertex inside to the mean of its neighbours, as in the paper; evens lengths out, also those meant to
             differ. "cotangent": leaves the inside of a flat mesh as it is, and with ``boundary="free"`` rounds the
-            boundary off.
-        iterations
-            Passes; more smooth further.
+            boundary off. More passes smooth further.
         boundary
             "fixed", or "free" (cotangent only): boundary and interfaces are rounded off, the inside follows harmonically.
         tolerance
@@ -175,9 +188,7 @@ class TriangleMesh:
 
             if solid and height is None:
                 raise ParameterError("height: expected a length with solid=True, found None")
-            return to_elements(
-                self.vertices, self.triangles, self.regions, height=height, layers=layers, order=order, **self._data()
-            )  # fmt: skip
+            return to_elements(self.vertices, self.triangles, self.regions, height=height, layers=layers, order=order, **self._data())
         from img2tri.views.pyvista_objects import to_pyvista
 
         return to_pyvista(self.vertices, self.triangles, self.regions, height=height, **self._data())
@@ -221,10 +232,8 @@ class TriangleMesh:
         if suffix in vectors.FORMATS:
             if height is not None:
                 raise ParameterError(f"height: expected None for {suffix}, which is a drawing, found {height!r}")
-            texts = self._data()["field_data"]
-            vectors.save_outlines(
-                path, self.outlines(), names=self.names, bounds=self._bounds(), upward=self.frame.upward, field_data=texts
-            )  # fmt: skip
+            about = {"bounds": self._bounds(), "upward": self.frame.upward, "field_data": self._data()["field_data"]}
+            vectors.save_outlines(path, self.outlines(), names=self.names, **about)
         elif suffix in EXPORTS and not (suffix == ".vtu" and height is not None and layers is None):
             export(path, self._cells(height, layers or 1, order), version=version, deck=deck, plane=plane)
         else:
@@ -239,10 +248,8 @@ class TriangleMesh:
 
         Parameters
         ----------
-        image
-            What was meshed: a path or an array; None draws the mesh alone.
-        path
-            Where to save the figure (.png, .svg, .pdf); None only returns it.
+        image, path
+            What was meshed, a path or an array; None draws the mesh alone. Where to save the figure (.png, .svg, .pdf).
         colour_by
             "quality", "region", or None for red edges as in the paper's figures.
         """
@@ -261,15 +268,18 @@ class TriangleMesh:
     def _cells(self, height: float | None, layers: int, order: int) -> Cells:
         """Return the elements solvers compute on, with their named sets."""
         from img2tri.views.cells import flat_cells, solid_cells
-        from img2tri.views.wedges import quadratic, wedges
+        from img2tri.views.wedges import wedges
 
         if order not in (1, 2):
             raise ParameterError(f"order: expected 1 or 2, found {order!r}")
-        nodes, elements = (self.vertices, self.triangles) if order == 1 else quadratic(self.vertices, self.triangles)
+        nodes, elements, n, middles = self.vertices, self.triangles, len(self.vertices), None
+        if order == 2:
+            curved = self.second_order()
+            nodes, elements, middles = curved.nodes, curved.triangles, curved.nodes[n:]
         flat = flat_cells(nodes, elements, self.regions, names=self.names, bounds=self._bounds(), **self._data())
         if height is None:
             return flat
-        points, cells, _ = wedges(self.vertices, self.triangles, height=height, layers=layers, order=order, z=self.frame.z)
+        points, cells, _ = wedges(nodes[:n], self.triangles, height=height, layers=layers, order=order, z=self.frame.z, middles=middles)
         return solid_cells(flat, points, cells)
 
     def _bounds(self) -> tuple[float, float, float, float] | None:

@@ -22,13 +22,13 @@ from img2tri.raster.zones import Zones, cleaned, find_zones
 from img2tri.records import Floats, Origin, Outlines, checked_names
 from img2tri.shapes.fields import EdgeLength
 from img2tri.shapes.links import Links, pixel_areas, pixels_beside
+from img2tri.shapes.periodic import check_periodic
 from img2tri.shapes.polygons import enclosed_areas
 
 RECIPES = ("conforming", "structured", "unstructured")
 SMOOTHINGS = ("none", "uniform", "cotangent")
 MOST_PASSES = 100_000
-PAPER_THRESHOLD = 240
-PAPER_STEP = "10px"
+PAPER_THRESHOLD, PAPER_STEP = 240, "10px"
 PAPER_SMOOTHING = {"structured": "none", "unstructured": "uniform"}
 
 
@@ -62,6 +62,7 @@ def mesh_image(
     min_angle: float = 30.0,
     tolerance: float | str = "0.5px",
     keep_area: bool = True,
+    periodic: str | None = None,
     smoothing: str | None = None,
     iterations: int = 10,
     spacing: float | Sequence[float] | str | None = None,
@@ -89,14 +90,11 @@ def mesh_image(
     threshold
         A number on the image's own scale: strictly greater is foreground. "otsu". None: images of two values are split in
         the middle, others by Otsu; in the paper's recipes 240.
-    labels
-        None: one white zone, region 1. True: each value of the image is a region of its own. A list: these values are.
-    background
-        The label that is not meshed; None: all are.
-    invert
-        Mesh the dark zone instead of the white one.
-    connectivity
-        4: pixels of the white zone hang together through their sides; 8: also through their corners.
+    labels, background
+        None: one white zone, region 1. True: each value of the image is a region of its own. A list: these values are. The
+        background is the label that is not meshed; None: all are.
+    invert, connectivity
+        Mesh the dark zone. Pixels hang together through their sides (4), or also through their corners (8).
     outline
         "smooth": through the places between the pixels where the edge is likely to be. "pixel": exactly along their sides.
     corners
@@ -123,6 +121,9 @@ def mesh_image(
     keep_area
         True: vertices on curved outlines are moved outwards so that the straight edges enclose the area the curve encloses,
         which makes computations on the mesh several times as exact. False: they lie on the outline.
+    periodic
+        "x": left and right side of the image, whose labels have to be the same, get vertices at the same heights, see
+        `TriangleMesh.periodic_pairs`. "y": bottom and top. "xy": both. Conforming recipe only.
     smoothing
         "none"; "uniform", each vertex to the mean of its neighbours; "cotangent", rounding off what is left of the pixels
         on boundary and interfaces within the tolerance, the interior following. None: what the recipe does, which is
@@ -135,7 +136,7 @@ def mesh_image(
         "lower": (0, 0) is the lower-left corner of the image, y points up. "upper": y points down from the upper-left
         corner. (x, y): the place of the lower-left corner.
     page, max_pixels
-        Which image of a file with several; the most pixels a file may have.
+        Which image of a file; the most pixels a file may have.
     crop
         (left, bottom, right, top) in world units: only that part of the image is meshed, where it lies.
     min_area
@@ -143,10 +144,8 @@ def mesh_image(
         part of the neighbour they share most with. None removes nothing. What was removed is in the report.
     largest
         True: only the largest component of each region is kept.
-    names
-        Names for regions, such as ``{1: "bone"}``.
-    seed
-        Of all that is random: the points inside, in the paper's unstructured recipe.
+    names, seed
+        Names for regions, such as ``{1: "bone"}``; the seed of all that is random.
     progress
         Called with the name of a stage and the fraction done; what it raises ends the work.
     **paper
@@ -160,7 +159,7 @@ def mesh_image(
     Raises
     ------
     FileError, ImageError, ParameterError
-        See `img2tri.errors`: the file, the image or an option is not as it must be.
+        The file, the image or an option is not as it must be.
 
     Examples
     --------
@@ -195,9 +194,10 @@ def mesh_image(
     zones = find_zones(picture, threshold=threshold, labels=labels, background=background, invert=invert)
     speck = None if min_area is None else frame.area("min_area", min_area) / math.prod(frame.spacing)
     zones, removed = cleaned(zones, min_area=speck, largest=largest, connectivity=connectivity)
+    check_periodic(periodic, zones.labels, recipe=recipe, smoothing=smoothing)
 
     tell("outlines", 0.2)
-    outlines, links = trace_outlines(zones, frame, connectivity=connectivity, corners=corners, outline=outline)
+    outlines, links = trace_outlines(zones, frame, connectivity=connectivity, corners=corners, outline=outline, periodic=periodic)
     if len(outlines.labels) == 1:
         raise ImageError(f"image: expected pixels to mesh, found none{_advice(zones.threshold, removed['pixels'])}")
     for named in names:
@@ -215,7 +215,7 @@ def mesh_image(
         spent = within / 2 if smoothing == "cotangent" else within
         made = conform(
             outlines, links, sizes, tolerance=spent, min_angle=min_angle, corners=corners,
-            keep_area=keep_area, seed=seed, progress=tell,
+            keep_area=keep_area, periodic=periodic, seed=seed, progress=tell,
         )  # fmt: skip
     else:
         if edge_length is None and recipe == "structured":
@@ -226,9 +226,10 @@ def mesh_image(
             iterations=passes, seed=seed, **paper,
         )  # fmt: skip
 
+    chosen = zones.threshold
     settings = {
-        "threshold": zones.threshold.value if zones.threshold else None,
-        "threshold_from": zones.threshold.how if zones.threshold else None,
+        "threshold": chosen and chosen.value,
+        "threshold_from": chosen and chosen.how,
         "labels": labels,
         "background": zones.background,
         "invert": invert,
@@ -244,6 +245,7 @@ def mesh_image(
         "min_angle": min_angle,
         "tolerance": within * frame.pixel,
         "keep_area": keep_area,
+        "periodic": periodic,
         "crop": picture.notes.get("crop"),
         "min_area": min_area,
         "largest": largest,

@@ -19,8 +19,8 @@ Measured on a disc of radius 150 px (Poisson's equation; edge lengths 10, 20, 40
     on the outline, middles on it (this module)          0.006 / 0.001        0.012 / 0.002         0.012 / 0.002
     =================================================== ==================== ===================== =====================
 
-What is left is the error of the outline itself. The greatest error of the gradient at an edge length of 4 px is 22 % of its maximum for a
-mask and 6 % for a gray image if sides follow the outline as it is, twice that of straight sides; smoothed, 8 % and 0.7 %.
+What is left is the error of the outline itself. The greatest error of the gradient, in % of its maximum, at an edge length of 4 px: 12 / 5
+with straight sides, 26 / 9 with sides that follow the outline as it is, 2.4 / 0.7 with the outline smoothed.
 """
 
 from __future__ import annotations

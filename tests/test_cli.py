@@ -43,6 +43,7 @@ ARRIVE = {
     "min_angle": (["--min-angle", "28.5"], 28.5),
     "tolerance": (["--tolerance", "0.25px"], "0.25px"),
     "keep_area": (["--no-keep-area"], False),
+    "periodic": (["--periodic", "xy"], "xy"),
     "smoothing": (["--smoothing", "cotangent"], "cotangent"),
     "iterations": (["--iterations", "3"], 3),
     "spacing": (["--spacing", "0.5,0.7"], (0.5, 0.7)),

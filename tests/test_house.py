@@ -24,7 +24,7 @@ ORDER = [
     {"records"},
     set(ROOMS),
     {"conforming", "paper", "judging"},
-    {"report"},
+    {"report", "second_order"},
     {"mesh"},
     {"pipeline"},
     {"options"},
@@ -41,6 +41,7 @@ LIBRARIES = {
     "paper": {"shapely"},
     "judging": {"shapely", "scipy"},
     "report": set(),
+    "second_order": {"scipy"},
     "mesh": {"shapely", "trimesh", "pyvista", "matplotlib"},  # for types only
     "cli": {"rich"},
 }

@@ -126,6 +126,7 @@ def test_image_data_on_points_reach_half_a_pixel_further():
 
 # ---- what each option changes ----
 
+WRAPPED = np.pad(GRAINS, ((0, 1), (0, 1)), mode="wrap")
 CHANGES = {
     "recipe": (UNEVEN * 255, {"recipe": "conforming"}, {"recipe": "structured"}, {"recipe": "unstructured"}),
     "threshold": (RAMP, {"threshold": 100}, {"threshold": 140}, {"threshold": "otsu"}),
@@ -137,6 +138,7 @@ CHANGES = {
     "outline": (UNEVEN, {}, {"outline": "pixel"}),
     "corners": (COMB, {}, {"corners": "round"}),
     "keep_area": (UNEVEN, {"edge_length": 8}, {"edge_length": 8, "keep_area": False}),
+    "periodic": (WRAPPED, {"labels": True}, {"labels": True, "periodic": "x"}, {"labels": True, "periodic": "y"}),
     "gradation": (SHAPES, {"boundary_edge_length": 2, "edge_length": 12}, {"boundary_edge_length": 2, "edge_length": 12, "gradation": 1}),
     "boundary_edge_length": (UNEVEN, {"edge_length": 8}, {"edge_length": 8, "boundary_edge_length": 3}),
     "min_edge_length": (UNEVEN, {"segments_per_turn": 60}, {"segments_per_turn": 60, "min_edge_length": 3}),

@@ -6,7 +6,7 @@ where the lines meet: as exact as the lines are long, and not where a smooth cur
 
 How long is long? On a circle of radius R, pixels allow a straight line no longer than sqrt(8 R) px, and two such lines meet at
 an angle of no more than 8 / length. A sharper turn is a corner. Sides along the rows and columns of the image are straight
-without any doubt, so for them four pixels will do.
+without any doubt, so for them three pixels will do.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from img2tri.shapes.unrolling import Points, Unrolled, cross
 LENGTHS = (3, 4, 6, 8, 12, 16, 24, 32)  # crossings that a line is fitted to
 ROUND = 11.0  # px: lines of this length may meet at one radian on a circle, with some margin
 SHORTEST = 6.0  # px, the least length of a line that is not along rows or columns
-ALIGNED = 3.9  # px, the least length of one that is
+ALIGNED = 2.9  # px, the least length of one that is
 EXACT = 1e-6  # px, greatest distance of crossings from a line along rows or columns
 SLOPPY = 0.05  # of the link: how far a line may miss the range of a crossing
 BEYOND = 1.8  # of the room in its block: how far out a corner may lie, it is then put back into the block

@@ -153,19 +153,9 @@ class Twins:
         return replace(d, breaks=breaks, moved=moved, reset=back, measured=measured, tested=tested)
 
     def divided(self, chains: Outlines, vertices: Floats) -> Outlines:
-        """Divide two sides alike, after filling divided them differently.
+        """Divide two sides of coarse outlines alike, after filling them, with `vertices` (n, 2), divided them differently.
 
-        Parameters
-        ----------
-        chains
-            The coarse outlines that were filled.
-        vertices
-            (n, 2) float64, the vertices of the mesh.
-
-        Returns
-        -------
-        Outlines
-            `chains` itself if both sides have their vertices at the same places; else with those that only one has.
+        Return `chains` itself if both sides have their vertices at the same places; else with those that only one has.
         """
         result = chains
         for wall in self.walls:
@@ -274,14 +264,7 @@ def _divided(chains: Outlines, places: Floats, axis: int, low: float, high: floa
 def periodic_pairs(vertices: Floats, bounds: tuple[float, float, float, float], periodic: str | None) -> dict[str, Ints]:
     """Pair the vertices on opposite sides.
 
-    Parameters
-    ----------
-    vertices
-        (n, 2) float64.
-    bounds
-        (left, bottom, right, top) of the image.
-    periodic
-        "x", "y", "xy" or None.
+    `bounds` are (left, bottom, right, top) of the image.
 
     Returns
     -------

@@ -168,7 +168,6 @@ def test_regular_polygons_at_any_angle(corners):
     assert np.median(errors) <= 0.25
 
 
-@pytest.mark.xfail(strict=True, reason="a corner is found twice where a ring begins, the second a tenth of a pixel away")
 def test_no_corner_is_found_twice():
     for corners in (3, 4, 5, 6):
         for angle in np.linspace(0, 2 * np.pi / corners, 24):

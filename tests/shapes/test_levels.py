@@ -218,11 +218,8 @@ def test_thin_parts_survive_that_the_gray_values_hardly_show():
 
 # ---- edges that say no more than a mask ----
 
-BY_GRAY = pytest.mark.xfail(strict=True, reason='threshold="otsu" takes the gray values of two-valued images for more than a mask')
-
-
 @pytest.mark.parametrize("pair", [(0, 255), (10, 11), (0.0, 1.0), (-3.5, 2.25)], ids=str)
-@pytest.mark.parametrize("how", ["left out", "given", pytest.param("otsu", marks=BY_GRAY)])
+@pytest.mark.parametrize("how", ["left out", "given", "otsu"])
 def test_an_image_of_two_values_is_its_mask(pair, how):
     mask = specimens.ellipse(40, (15.2, 9.1), 30, (20.3, 19.1)).astype(bool)
     image = np.where(mask, *pair[::-1])
