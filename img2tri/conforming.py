@@ -147,10 +147,12 @@ def conform(
     corners: str = "auto",
     keep_area: bool = True,
     periodic: str | None = None,
+    interior: str = "lattice",
     seed: int = 0,
     progress: Callable[[str, float], object] | None = None,
 ) -> Made:
     """Mesh all regions of an image, given its dense outlines; lengths in px."""
+    from img2tri.scattering import scattered
     from img2tri.triangles.delaunay import NetworkError
     from img2tri.triangles.filling import fill
     from img2tri.triangles.relaxing import smallest_angles
@@ -169,10 +171,13 @@ def conform(
         try:
             for _ in range(FILLINGS):
                 segments, left, right = chains.segments
-                vertices, triangles, regions = fill(
-                    chains.points, segments, left, right, edge_length=sizes.longest, min_angle=min_angle,
-                    gradation=sizes.gradation, size=sizes.field, seed=seed,
-                )  # fmt: skip
+                if interior == "poisson":
+                    vertices, triangles, regions = scattered(chains, sizes.longest, sizes.field, min_angle=min_angle, seed=seed)
+                else:
+                    vertices, triangles, regions = fill(
+                        chains.points, segments, left, right, edge_length=sizes.longest, min_angle=min_angle,
+                        gradation=sizes.gradation, size=sizes.field, seed=seed,
+                    )  # fmt: skip
                 filled, chains = chains, twins.divided(chains, vertices)
                 if chains is filled:
                     break

@@ -16,7 +16,7 @@ from img2tri import __version__
 MESH_OPTIONS = (
     "recipe", "threshold", "labels", "background", "invert", "connectivity", "outline", "corners", "edge_length", "gradation",
     "min_edge_length", "boundary_edge_length", "elements_across", "segments_per_turn", "min_angle", "tolerance", "keep_area", "smoothing",
-    "periodic",
+    "periodic", "interior",
     "iterations", "spacing", "origin", "page", "crop", "min_area", "largest", "max_pixels", "names", "seed",
     "step", "n_boundary_points", "n_interior_points", "min_distance", "min_distance_to_boundary",
 )  # fmt: skip
@@ -186,6 +186,7 @@ def _add_mesh_options(parser: ArgumentParser) -> None:
     add("--keep-area", action=BooleanOptionalAction, help="move vertices outwards on curved outlines, so that areas are kept, or leave "
         "them on the outlines (default --keep-area)")  # fmt: skip
     add("--periodic", metavar="D", help="x, y or xy: opposite sides, whose pixels have to be the same, get vertices at the same places")
+    add("--interior", metavar="I", help="lattice: even triangles; poisson: scattered points, as in the paper (default lattice)")
     add("--smoothing", metavar="S", help="none, uniform or cotangent (default none; uniform for unstructured)")
     add("--iterations", type=_whole, metavar="N", help="passes of smoothing (default 10)")
 

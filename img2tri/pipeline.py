@@ -63,6 +63,7 @@ def mesh_image(
     tolerance: float | str = "0.5px",
     keep_area: bool = True,
     periodic: str | None = None,
+    interior: str = "lattice",
     smoothing: str | None = None,
     iterations: int = 10,
     spacing: float | Sequence[float] | str | None = None,
@@ -95,9 +96,8 @@ def mesh_image(
         background is the label that is not meshed; None: all are.
     invert, connectivity
         Mesh the dark zone. Pixels hang together through their sides (4), or also through their corners (8).
-    outline
+    outline, corners
         "smooth": through the places between the pixels where the edge is likely to be. "pixel": exactly along their sides.
-    corners
         "auto": corners are kept sharp, as far as `min_angle` allows. "keep": always, even where that forces smaller
         angles, which the report then lists. "round": they are smoothed as all else is.
     edge_length
@@ -106,10 +106,9 @@ def mesh_image(
         (h, w) of lengths, one for each pixel; a function of places (k, 2) that returns lengths (k,).
     gradation
         By how much the length may grow per unit of distance. Smaller gives better triangles, and more.
-    min_edge_length
-        Outlines get no shorter edges than this for the sake of the options here, only where tolerance, topology or angles need it.
-    boundary_edge_length
-        Length of edges along all outlines; fine there, coarse inside.
+    min_edge_length, boundary_edge_length
+        Outlines get no shorter edges than the first for the sake of the options here, only where tolerance, topology or angles
+        need it. The second is the length of edges along all outlines; fine there, coarse inside.
     elements_across
         At least so many edges across the thinnest places, 2 or 3 for bending. None does not look after it.
     segments_per_turn
@@ -121,15 +120,14 @@ def mesh_image(
     keep_area
         True: vertices on curved outlines are moved outwards so that the straight edges enclose the area the curve encloses,
         which makes computations on the mesh several times as exact. False: they lie on the outline.
-    periodic
+    periodic, interior
         "x": left and right side of the image, whose labels have to be the same, get vertices at the same heights, see
-        `TriangleMesh.periodic_pairs`. "y": bottom and top. "xy": both. Conforming recipe only.
-    smoothing
-        "none"; "uniform", each vertex to the mean of its neighbours; "cotangent", rounding off what is left of the pixels
+        `TriangleMesh.periodic_pairs`; "y": bottom and top; "xy": both. Points inside: "lattice", for the best triangles, or
+        "poisson", scattered as in the paper.
+    smoothing, iterations
+        Kind, and passes: "none"; "uniform", each vertex to the mean of its neighbours; "cotangent", rounding off what is left of the pixels
         on boundary and interfaces within the tolerance, the interior following. None: what the recipe does, which is
         "uniform" for "unstructured".
-    iterations
-        Passes of smoothing.
     spacing
         Size of a pixel in world units: a number, (dx, dy), or "file". None is 1.
     origin
@@ -176,6 +174,7 @@ def mesh_image(
     background = None if background is None else label("background", background)
     choice("outline", outline, ("smooth", "pixel"))
     choice("corners", corners, ("auto", "keep", "round"))
+    choice("interior", interior, ("lattice", "poisson"))
     smoothing = None if smoothing is None else choice("smoothing", smoothing, SMOOTHINGS)
     invert, keep_area, largest = flag("invert", invert), flag("keep_area", keep_area), flag("largest", largest)
     iterations, seed = integer("iterations", iterations, most=MOST_PASSES), integer("seed", seed, most=2**64 - 1)
@@ -215,7 +214,7 @@ def mesh_image(
         spent = within / 2 if smoothing == "cotangent" else within
         made = conform(
             outlines, links, sizes, tolerance=spent, min_angle=min_angle, corners=corners,
-            keep_area=keep_area, periodic=periodic, seed=seed, progress=tell,
+            keep_area=keep_area, periodic=periodic, interior=interior, seed=seed, progress=tell,
         )  # fmt: skip
     else:
         if edge_length is None and recipe == "structured":
@@ -246,6 +245,7 @@ def mesh_image(
         "tolerance": within * frame.pixel,
         "keep_area": keep_area,
         "periodic": periodic,
+        "interior": interior,
         "crop": picture.notes.get("crop"),
         "min_area": min_area,
         "largest": largest,

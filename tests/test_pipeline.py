@@ -139,6 +139,7 @@ CHANGES = {
     "corners": (COMB, {}, {"corners": "round"}),
     "keep_area": (UNEVEN, {"edge_length": 8}, {"edge_length": 8, "keep_area": False}),
     "periodic": (WRAPPED, {"labels": True}, {"labels": True, "periodic": "x"}, {"labels": True, "periodic": "y"}),
+    "interior": (UNEVEN, {}, {"interior": "poisson"}),
     "gradation": (SHAPES, {"boundary_edge_length": 2, "edge_length": 12}, {"boundary_edge_length": 2, "edge_length": 12, "gradation": 1}),
     "boundary_edge_length": (UNEVEN, {"edge_length": 8}, {"edge_length": 8, "boundary_edge_length": 3}),
     "min_edge_length": (UNEVEN, {"segments_per_turn": 60}, {"segments_per_turn": 60, "min_edge_length": 3}),
