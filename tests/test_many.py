@@ -59,12 +59,12 @@ def test_threads_save_to_one_name(tmp_path):
 def test_spawned_processes_make_the_same_meshes():
     context = multiprocessing.get_context("spawn")
     with concurrent.futures.ProcessPoolExecutor(2, mp_context=context) as pool:
-        others = list(pool.map(mesh_bytes, [image.tolist() for image in IMAGES[:2]]))
-    assert others == [mesh_bytes(image.tolist()) for image in IMAGES[:2]]
-
-
-def mesh_bytes(rows):
-    return mesh_image(np.array(rows)).vertices.tobytes()
+        others = list(pool.map(mesh_image, IMAGES[:2]))  # a mesh comes back from another process whole
+    for image, other in zip(IMAGES[:2], others, strict=True):
+        mesh = mesh_image(image)
+        assert other.vertices.tobytes() == mesh.vertices.tobytes()
+        assert other.triangles.tobytes() == mesh.triangles.tobytes()
+        assert other.report == mesh.report
 
 
 def test_nothing_global_changes():

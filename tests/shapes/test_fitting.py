@@ -24,7 +24,7 @@ SHAPES = {
     "spiral": specimens.spiral(),
     "one pixel": specimens.MASKS["one pixel"],
 }
-BEYOND_ENDS = pytest.mark.xfail(strict=True, reason="whether a scale fits near the ends of a chain is judged with points of the chain next to it on the line")
+BEYOND_ENDS = pytest.mark.xfail(strict=True, reason="near its ends, whether a scale fits a chain is judged with points of the next one")
 
 
 def sliding(labels, reach=REACH):
