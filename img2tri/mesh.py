@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from pyvista import PolyData, UnstructuredGrid
     from shapely import MultiPolygon, Polygon
+    from skfem import MeshTri
     from trimesh import Scene, Trimesh
 
     from img2tri.report import Report
@@ -34,12 +35,9 @@ class TriangleMesh:
 
     Attributes
     ----------
-    vertices
-        (n, 2) float64, world coordinates.
-    triangles
-        (m, 3) int64, counter-clockwise.
-    regions
-        (m,) int64, the image's own label of each triangle; 1 for one white zone.
+    vertices, triangles, regions
+        (n, 2) float64, world coordinates; (m, 3) int64, counter-clockwise; (m,) int64, the image's own label of each triangle, 1
+        for one white zone.
     frame
         Where the image lies.
     names
@@ -64,8 +62,8 @@ class TriangleMesh:
 
     def __post_init__(self) -> None:
         vertices, triangles = check_mesh(self.vertices, self.triangles)
-        regions = check_regions(self.regions, triangles)
-        for name, array in (("vertices", vertices), ("triangles", triangles), ("regions", regions)):
+        arrays = {"vertices": vertices, "triangles": triangles, "regions": check_regions(self.regions, triangles)}
+        for name, array in arrays.items():
             view = array.view()
             view.flags.writeable = False
             object.__setattr__(self, name, view)
@@ -77,7 +75,6 @@ class TriangleMesh:
         return f"TriangleMesh: {text}, {x0:g} <= x <= {x1:g}, {y0:g} <= y <= {y1:g}"
 
     def _repr_html_(self) -> str:
-        """Return a picture with a line of numbers, for notebooks."""
         from img2tri.views.notebook import html
 
         return html(self.vertices, self.triangles, self.regions, upward=self.frame.upward)
@@ -139,10 +136,8 @@ class TriangleMesh:
             boundary off. More passes smooth further.
         boundary
             "fixed", or "free" (cotangent only): boundary and interfaces are rounded off, the inside follows harmonically.
-        tolerance
-            How far a vertex of the boundary may move, in world units, or "0.5px", or "2%" of the image diagonal.
-        guard
-            True: no triangle is turned over, and the worst angle does not fall. False: the paper's uniform smoothing.
+        tolerance, guard
+            How far a vertex of the boundary may move, as a length. Whether no triangle may be turned over, nor the worst angle fall.
         """
         from img2tri.triangles.smoothing import cotangent, uniform
 
@@ -194,10 +189,16 @@ class TriangleMesh:
         return to_pyvista(self.vertices, self.triangles, self.regions, height=height, **self._data())
 
     def sets(self) -> Sets:
-        """Name the parts of the mesh: regions, sides of the frame, outer boundary, holes, interfaces ``A__B``."""
+        """Name the parts: regions, sides of the frame, outer boundary, holes, interfaces ``A__B``."""
         from img2tri.views.sets import named_sets
 
         return named_sets(self.vertices, self.triangles, self.regions, bounds=self._bounds(), names=self.names)
+
+    def to_skfem(self) -> MeshTri:
+        """Return a ``skfem.MeshTri`` with regions as subdomains and named edges as boundaries; needs ``img2tri[fem]``."""
+        from img2tri.views.skfem_objects import to_skfem
+
+        return to_skfem(self.vertices, self.triangles, self.sets())
 
     def save(
         self,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
@@ -23,6 +24,32 @@ def test_one_call(tmp_path):
     assert found["q_mean"] > 0.95
     assert found["hausdorff"] <= 0.25  # half of a pixel of 0.5
     assert (tmp_path / "femur.png").stat().st_size > 10_000
+
+
+def test_smoothing(tmp_path):
+    found = run("04_smoothing", tmp_path)
+    assert found["blob_cotangent_edge_factor"] == pytest.approx(1, abs=1e-12)
+    assert found["blob_uniform_worst_angle"] >= 30
+    assert found["femur_then_free_boundary_bend"] < 0.5 * found["femur_as_made_boundary_bend"]
+
+
+def test_femur_under_load(tmp_path):
+    pytest.importorskip("skfem")
+    found = run("05_femur_under_load", tmp_path)
+    assert found["kept"]
+    assert found["work"] > 0
+    assert found["work_if_twice_as_stiff"] == pytest.approx(found["work"] / 2)
+    assert 1 < found["head_goes_down"] < 10
+    assert 10 < found["stress"] < 100
+
+
+def test_poisson_on_a_disc(tmp_path):
+    pytest.importorskip("skfem")
+    found = run("06_poisson_on_a_disc", tmp_path)
+    assert found["kept_10_P1"] <= 0.09
+    assert found["kept_10_P2"] <= 0.03
+    assert found["kept_10_P1"] < 0.5 * found["plain_10_P1"]
+    assert np.log2(found["kept_20_P1"] / found["kept_10_P1"]) >= 1.9  # second order
 
 
 def test_extrude_to_stl(tmp_path):

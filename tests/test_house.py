@@ -37,14 +37,14 @@ LIBRARIES = {
     "raster": {"cv2", "PIL", "tifffile", "pydicom", "nibabel", "scipy"},  # scipy joins runs of pixels to components
     "shapes": {"shapely", "scipy", "cv2"},  # cv2 traces the paper's contours
     "triangles": {"scipy", "igl", "pythoncdt", "shapely"},
-    "views": {"trimesh", "pyvista", "vtkmodules", "matplotlib"},
+    "views": {"skfem", "trimesh", "pyvista", "vtkmodules", "matplotlib"},
     "conforming": set(),
     "paper": {"shapely"},
     "scattering": {"scipy"},
     "judging": {"shapely", "scipy"},
     "report": set(),
     "second_order": {"scipy"},
-    "mesh": {"shapely", "trimesh", "pyvista", "matplotlib"},  # for types only
+    "mesh": {"skfem", "shapely", "trimesh", "pyvista", "matplotlib"},  # for types only
     "cli": {"rich"},
 }
 HEAVY = {"cv2", "PIL", "tifffile", "scipy", "shapely", "igl", "pythoncdt", "trimesh", "pyvista", "vtkmodules", "matplotlib", "rich"}
