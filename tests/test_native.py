@@ -125,7 +125,6 @@ def saved_files():
         return {path.suffix: path.read_bytes() for path in sorted(Path(folder).iterdir()) if path.suffix != ".3mf"}
 
 
-@pytest.mark.xfail(strict=False, reason="rounding off a mesh without extent ends in an error of numpy")
 def test_no_mesh_of_arrays_ends_the_process():
     names = [name for name in MESHES if name != "in a line"]
     outcomes = dict(zip(names, children.run("test_native:use", names), strict=True))

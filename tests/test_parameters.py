@@ -83,7 +83,6 @@ def sweep(cases):
     return dict(zip(cases, outcomes, strict=True))
 
 
-@pytest.mark.xfail(strict=False, reason="min_distance of 1e300 overflows in shapely")
 def test_no_value_of_an_option_is_met_with_anything_but_its_name_or_a_mesh():
     outcomes = sweep([case for case in CASES if case[1] in QUICK])
     for option in OPTIONS:
@@ -92,7 +91,6 @@ def test_no_value_of_an_option_is_met_with_anything_but_its_name_or_a_mesh():
         assert outcomes[option, "np.array([1, 2])"].kind == "refused" or option in ("spacing", "origin"), option
 
 
-@pytest.mark.xfail(strict=False, reason="min_distance of 1e300 overflows in shapely")
 @pytest.mark.slow
 def test_no_value_of_an_option_is_met_with_anything_but_its_name_or_a_mesh_of_all():
     sweep(CASES)

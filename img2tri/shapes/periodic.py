@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from img2tri.errors import ImageError, MeshError, ParameterError
+from img2tri.errors import ImageError, MeshError, ParameterError, shown
 from img2tri.records import Bools, Floats, Ints, Outlines
 from img2tri.shapes.coarsening import settle
 from img2tri.shapes.drafts import Draft
@@ -51,8 +51,8 @@ def check_periodic(periodic: str | None, labels: NDArray[Any], *, recipe: str = 
     ...
     img2tri.errors.ImageError: periodic: expected the same labels in the first and the last column, found 2 and 1 in row 1 (1 such); ...
     """
-    if periodic not in DIRECTIONS:
-        raise ParameterError(f"periodic: expected 'x', 'y', 'xy' or None, found {periodic!r}")
+    if not (periodic is None or isinstance(periodic, str)) or periodic not in DIRECTIONS:
+        raise ParameterError(f"periodic: expected 'x', 'y', 'xy' or None, found {shown(periodic)}")
     if periodic and (recipe != "conforming" or smoothing == "cotangent"):
         found = f"recipe {recipe!r}" if recipe != "conforming" else f"smoothing {smoothing!r}"
         raise ParameterError(f"periodic: expected None with {found}, which does not keep opposite sides alike, found {periodic!r}")

@@ -26,6 +26,7 @@ from img2tri.errors import ParameterError, finite, integer
 from img2tri.records import Floats, Ints
 from img2tri.shapes.room import SLACK, Positions, Room, Squares
 
+LARGEST = 1e100  # distances whose squares are numbers too
 BATCHES = 4             # in which the cells get their first dart: the fewer at a time, the fewer get in each other's way
 DEPTH = 20              # how often a cell is split at most: down to a millionth of min_distance
 MOST_CELLS = 2**25      # of the grid, which then takes 0.7 GB
@@ -84,8 +85,8 @@ def poisson_disk(
     >>> len(poisson_disk(square, square, min_distance=30, min_distance_to_boundary=1, n_points=20))
     1
     """
-    room = Room.of(region, boundary_points, finite("min_distance_to_boundary", min_distance_to_boundary, least=0))
-    distance = finite("min_distance", min_distance, least=0)
+    room = Room.of(region, boundary_points, finite("min_distance_to_boundary", min_distance_to_boundary, least=0, most=LARGEST))
+    distance = finite("min_distance", min_distance, least=0, most=LARGEST)
     wanted = math.inf if n_points is None else integer("n_points", n_points)
     rng = np.random.default_rng(integer("seed", seed))
     if wanted == 0 or room.polygon.area == 0:
