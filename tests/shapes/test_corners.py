@@ -62,13 +62,27 @@ def test_a_rectangle_along_rows_and_columns_is_exact(sides, place_of):
 TOO_NEAR = pytest.mark.xfail(strict=True, reason="of corners four pixels apart or less only some are kept")
 
 
-@pytest.mark.parametrize("side", [pytest.param(3, marks=TOO_NEAR), pytest.param(4, marks=TOO_NEAR), 5, 6])
-def test_small_squares_as_in_printed_codes(side):
-    code = np.array([[1, 0, 1, 0, 1], [0, 1, 1, 0, 0], [1, 0, 0, 0, 1]])[:1]  # squares in a row, so that none touches another by a corner
-    labels = np.pad(np.kron(code, np.ones((side, side), int)), side)
-    expected = [(side * (1 + 2 * k + dx), side * (1 + dy)) for k in range(3) for dx in (0, 1) for dy in (0, 1)]
-    found, _ = corners_of(labels)
-    assert same_points(found, expected, 1e-9)
+def row_of_squares(side):
+    """Squares as of a printed code, none of which touches another, and their corners."""
+    labels = np.pad(np.kron([[1, 0, 1, 0, 1]], np.ones((side, side), int)), side)
+    return labels, [(side * (1 + 2 * k + dx), side * (1 + dy)) for k in range(3) for dx in (0, 1) for dy in (0, 1)]
+
+
+@pytest.mark.parametrize("side", [pytest.param(3, marks=TOO_NEAR), pytest.param(4, marks=TOO_NEAR), 5, 6, 7])
+def test_squares_of_three_pixels_have_corners(side):
+    labels, corners = row_of_squares(side)
+    assert same_points(corners_of(labels)[0], corners, 1e-9)
+
+
+@pytest.mark.parametrize("side", [1, 2])
+def test_smaller_squares_are_rounded_at_all_four(side):
+    found, outlines = corners_of(row_of_squares(side)[0])
+    assert len(found) == 0
+    for square in range(3):
+        points = outlines.points[outlines.indices[outlines.starts[square] : outlines.starts[square + 1]]]
+        off = points - [side * (1.5 + 2 * square), 1.5 * side]
+        turned = off @ [[0, 1], [-1, 0]]
+        assert np.hypot(*(off[:, None] - turned[None]).transpose(2, 0, 1)).min(axis=1).max() < 1e-9
 
 
 def test_corners_that_point_inwards_are_as_exact():
