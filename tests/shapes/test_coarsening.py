@@ -95,11 +95,11 @@ def check(d, labels, tolerance, background=0):
     oracles.check_coverage(region_polygons(coarse), labels, None, background=background)
 
 
-@pytest.mark.parametrize(("tolerance", "rounds"), [(0.1, 0), (0.5, 0), (0.5, 3), (2.0, 1)])
+@pytest.mark.parametrize(("tolerance", "rounds"), [(0.1, 0), (0.5, 3), (2.0, 1)])
 @pytest.mark.parametrize("name", EVERYTHING)
 def test_everything_at_any_tolerance(name, tolerance, rounds):
     labels = EVERYTHING[name]
-    for spacing in (2.0, 8.0, 40.0):
+    for spacing in (2.0, 12.0):
         d = settled(labels, spacing, tolerance, rounds)
         check(d, labels, tolerance)
         assert angles_between(d.coarse()) > LEAST_ANGLE - 1e-6

@@ -59,7 +59,7 @@ def test_a_rectangle_along_rows_and_columns_is_exact(sides, place_of):
     assert shapely.distance(ring, shapely.points(outlines.points)).max() < 1e-9
 
 
-TOO_NEAR = pytest.mark.xfail(strict=True, reason="of corners four pixels apart or less only some are kept")
+TOO_NEAR = pytest.mark.xfail(strict=True, raises=AssertionError, reason="of corners four pixels apart or less only some are kept")
 
 
 def row_of_squares(side):
@@ -220,12 +220,14 @@ def test_ellipses_with_narrow_tips_seldom_have_a_corner():
     assert sum(len(corners_of(labels)[0]) > 0 for labels in random_ellipses((4, 12), 80)) <= 0.02 * 80
 
 
-@pytest.mark.xfail(strict=True, reason="tips with a radius of curvature of 3 to 4 px: one ellipse in twenty gets a corner")
+@pytest.mark.xfail(
+    strict=True, raises=AssertionError, reason="tips with a radius of curvature of 3 to 4 px: one ellipse in twenty gets a corner"
+)
 def test_narrow_tips_are_no_corners():
     assert sum(len(corners_of(labels)[0]) for labels in random_ellipses((3, 4), 60)) == 0
 
 
-@pytest.mark.xfail(strict=True, reason="a third of the discs of radius 3 get one corner")
+@pytest.mark.xfail(strict=True, raises=AssertionError, reason="a third of the discs of radius 3 get one corner")
 def test_the_smallest_discs_have_no_corner():
     rng = np.random.default_rng(3)
     assert sum(len(corners_of(specimens.disc(14, 3.0, tuple(7 + rng.uniform(-0.5, 0.5, 2))))[0]) for _ in range(60)) == 0
