@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from img2tri.errors import MeshError
 from img2tri.records import Bools, Floats, Ints, Origin, Outlines
 from img2tri.shapes.polygons import rings
 from img2tri.triangles.topology import boundary_edges, unique_edges
@@ -28,8 +29,6 @@ class Curves:
         """Distance of places (k, 2) to the nearest segment."""
         import shapely
 
-        if not len(places):
-            return np.zeros(0)
         result: Floats = self.tree.query_nearest(shapely.points(places), return_distance=True, all_matches=False)[1]
         return result
 
@@ -61,8 +60,10 @@ def numbers(regions: Ints, labels: Ints) -> tuple[Ints, list[int]]:
 
 
 def hausdorff(one: Curves, other: Curves) -> tuple[float, Floats]:
-    """Two-sided distance of two sets of curves, and the place that is farthest."""
+    """Two-sided distance of the outlines and the curves of a mesh, and the place that is farthest."""
     there, back = one.samples(), other.samples()
+    if not len(back):
+        raise MeshError("report: expected a mesh with a boundary, found one folded upon itself, with two triangles at every edge")
     far = other.distance(there), one.distance(back)
     side = int(far[1].max() >= far[0].max())
     at = int(np.argmax(far[side]))

@@ -18,8 +18,9 @@ import pytest
 import specimens
 from PIL import Image
 
-from img2tri import cli, mesh_image, options, pipeline
+from img2tri import cli, mesh_image, pipeline
 from img2tri.cli import main
+from img2tri.commands import mesh_options, telling
 from img2tri.views.export import EXPORTS
 from img2tri.views.files import FORMATS, load
 from img2tri.views.vectors import FORMATS as DRAWINGS
@@ -127,7 +128,7 @@ def test_every_option_of_mesh_image_is_there_but_callables():
     assert signature["paper"].kind == inspect.Parameter.VAR_KEYWORD
     keyword_only = {name for name, p in signature.items() if p.kind == inspect.Parameter.KEYWORD_ONLY}
     expected = (keyword_only - {"progress"}) | set(pipeline.PaperOptions.__annotations__)
-    assert set(options.MESH_OPTIONS) == expected
+    assert set(mesh_options.MESH_OPTIONS) == expected
     assert set(ARRIVE) == expected
 
 
@@ -299,7 +300,63 @@ def test_one_bad_file_does_not_stop_the_others(tmp_path, capsys):
     bad.write_bytes(b"not an image")
     assert main(["mesh", good[0], str(bad), good[1], "-o", str(tmp_path / "{stem}.stl"), "--quiet"]) == 2
     assert sorted(p.name for p in tmp_path.glob("*.stl")) == ["a.stl", "c.stl"]
-    assert _complaint(capsys).startswith(f"img2tri: {bad}: ")
+    why, summary = capsys.readouterr().err.splitlines()
+    assert why == f"img2tri: {bad}: image: '{bad}' is not an image in a known format"
+    assert summary == f"img2tri: 1 of 3 images failed: {bad}"
+
+
+# ---- a folder for the results ----
+
+
+@pytest.mark.parametrize("there", [False, True])
+def test_a_folder_gets_a_file_of_each_format_for_each_image(there, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    images = [_saved(specimens.disc(30, r) * 255, tmp_path / f"disc{r}.png") for r in (8, 12)]
+    if there:
+        Path("out").mkdir()
+    assert main(["mesh", *images, "--out-dir", "out", "--format", "stl", "--format", ".OBJ", "--format", "stl", "--quiet"]) == 0
+    assert sorted(os.listdir("out")) == ["disc12.obj", "disc12.stl", "disc8.obj", "disc8.stl"]
+
+
+def test_a_folder_gets_ply_if_no_format_is_named_beside_what_is_named(disc, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["mesh", disc, "--out-dir", "{stem}", "-o", "x_{stem}.stl"]) == 0
+    assert sorted(p.as_posix() for p in Path().rglob("*.*")) == ["disc.png", "x_disc.stl", "{stem}/disc.ply"]
+    assert "saved       x_disc.stl, {stem}/disc.ply" in capsys.readouterr().out.splitlines()
+
+
+def test_names_that_collide_are_refused_before_any_image_is_read(arrived, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    for folder in "ab":
+        Path(folder).mkdir()
+        _saved(specimens.disc(30, 8), Path(folder, "x.png"))
+    assert main(["mesh", "a/x.png", "b/x.png", "--out-dir", "out"]) == 2
+    assert _complaint(capsys) == (
+        "img2tri: --out-dir: expected a file of its own, found 'out/x.ply', which is in use for 'a/x.png'\n"
+    )
+    assert arrived == []
+    assert not Path("out").exists()
+    assert main(["mesh", "a/x.png", "b/x_facets.png", "--out-dir", "out", "--format", "xdmf"]) == 2
+    assert "which is in use for 'a/x.png'" in _complaint(capsys)
+
+
+def test_names_in_large_letters_collide_where_they_are_the_same(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    images = [_saved(specimens.disc(30, 8), tmp_path / name) for name in ("x.png", "X.png")]
+    assert main(["mesh", *images, "--out-dir", "out", "--quiet"]) == 0
+    assert sorted(os.listdir("out")) == ["X.ply", "x.ply"]
+    monkeypatch.setattr(sys, "platform", "darwin")
+    assert main(["mesh", *images, "--out-dir", "out", "--quiet"]) == 2
+    assert "in use for" in _complaint(capsys)
+
+
+def test_a_new_folder_without_results_goes_again(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["mesh", "none.png", "--out-dir", "out"]) == 2
+    assert os.listdir() == []
+    Path("old").mkdir()
+    assert main(["mesh", "none.png", "--out-dir", "old"]) == 2
+    assert os.listdir() == ["old"]
 
 
 def test_an_older_file_is_replaced(disc, tmp_path):
@@ -350,7 +407,7 @@ class _Terminal(io.StringIO):
 
 @pytest.mark.parametrize(("patience", "quiet", "shown"), [(0, False, True), (0, True, False), (1e9, False, False)])
 def test_a_bar_is_shown_in_a_terminal_when_work_is_long(patience, quiet, shown, disc, tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(cli, "PATIENCE", patience)
+    monkeypatch.setattr(telling, "PATIENCE", patience)
     monkeypatch.setattr(sys, "stderr", _Terminal())
     monkeypatch.setenv("TERM", "xterm")
     assert main(["mesh", disc, "-o", str(tmp_path / "a.stl"), *["--quiet"] * quiet]) == 0
@@ -361,7 +418,7 @@ def test_a_bar_is_shown_in_a_terminal_when_work_is_long(patience, quiet, shown, 
 
 
 def test_the_bar_can_show_any_name(tmp_path, monkeypatch):
-    monkeypatch.setattr(cli, "PATIENCE", 0)
+    monkeypatch.setattr(telling, "PATIENCE", 0)
     monkeypatch.setattr(sys, "stderr", _Terminal())
     images = [_saved(specimens.disc(20, 8) * 255, tmp_path / name) for name in ("[red]é[.png", "b.png")]
     assert main(["mesh", *images, "-o", str(tmp_path / "{stem}.stl"), "--quiet"]) == 0
@@ -412,6 +469,19 @@ BAD_INPUT = {
     "figure over the image": (["DISC", "--plot", "DISC"], "--plot: expected a file of its own"),
     "one name for two images": (["DISC", "BLACK", "-o", "a.stl"], "-o: expected a name with {stem} for 2 images, found 'a.stl'"),
     "two images of one name": (["DISC", "DISC", "-o", "{stem}.stl"], "in use for"),
+    "no parent of the folder": (["DISC", "--out-dir", "none/out"], "--out-dir: expected a folder, or the name of one to be made, found"),
+    "a file as folder": (["DISC", "--out-dir", "TEXT"], "expected an existing folder, found none at"),
+    "format": (["DISC", "--out-dir", "out", "--format", "dwg"], "--format: expected one of 3mf, bdf, dxf, geojson, glb"),
+    "format without a folder": (["DISC", "--format", "stl"], "--format: expected with --out-dir or -o -, found neither"),
+    "one name in the folder and beside": (["DISC", "--out-dir", "out", "-o", "out/disc.ply"], "'out/disc.ply', which is in use for"),
+    "image in the folder": (["DISC", "a.ply", "--out-dir", ".", "--format", "ply"], "found './a.ply', which is in use for 'a.ply'"),
+    "workers": (["DISC", "--workers", "0"], "--workers: expected a whole number of at least 1, found 0"),
+    "stdout without a format": (["DISC", "-o", "-"], "--format: expected one with -o -, as in --format stl, found none"),
+    "stdout with two formats": (["DISC", "-o", "-", "--format", "stl", "--format", "ply"], "--format: expected one with -o -"),
+    "stdout twice": (["DISC", "-o", "-", "-o", "-", "--format", "stl"], "-o -: expected once, and with one image, found 2 times"),
+    "stdout for two images": (["DISC", "TEXT", "-o", "-", "--format", "stl"], "-o -: expected once, and with one image, found 2 images"),
+    "stdout for several files": (["DISC", "-o", "-", "--format", "xdmf"], "-o -: expected a format of one file, found xdmf"),
+    "stdin twice": (["-", "-"], "-: expected once, as stdin is read once, found 2 times"),
 }
 
 
@@ -443,9 +513,11 @@ def test_bad_input_is_one_line_and_leaves_no_file(case, disc, tmp_path, capsys, 
     typed = _written(arguments, disc, tmp_path)
     before = {p: p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()}
     extra = [] if "-o" in typed else ["-o", "{stem}_out.stl"]
+    folders = [p for p in tmp_path.rglob("*") if p.is_dir()]
     assert main(["mesh", *typed, *extra, "--quiet"]) == 2
     assert text in _complaint(capsys)
     assert {p: p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()} == before
+    assert [p for p in tmp_path.rglob("*") if p.is_dir()] == folders
 
 
 def test_names_of_files_are_checked_before_any_work(arrived, disc):
@@ -554,3 +626,179 @@ def test_view_report_says_in_one_line_what_is_wrong(tmp_path, capsys):
     assert main(["view-report", str(tmp_path / "missing.png"), "-o", str(tmp_path / "page.html")]) == 2
     assert len(capsys.readouterr().err.splitlines()) == 1
     assert not list(tmp_path.iterdir())
+
+
+# ---- stdin and stdout ----
+
+
+def _stdin(monkeypatch, path, terminal=False):
+    stream = io.TextIOWrapper(io.BytesIO(Path(path).read_bytes()))
+    stream.isatty = lambda: terminal
+    monkeypatch.setattr(sys, "stdin", stream)
+
+
+def _piped(data, *arguments, **given):
+    return subprocess.run([sys.executable, "-m", "img2tri", *arguments], input=data, capture_output=True, check=False, timeout=60, **given)
+
+
+@pytest.mark.parametrize(("suffix", "more"), [("stl", ["--height", "5"]), ("ply", []), ("vtu", []), ("geojson", ["--edge-length", "5"])])
+def test_from_stdin_to_stdout_are_the_bytes_of_the_file(suffix, more, disc, tmp_path, monkeypatch, capsysbinary):
+    _stdin(monkeypatch, disc)
+    assert main(["mesh", "-", "-o", "-", "--format", suffix, *more, "-o", str(tmp_path / "{stem}.ply")]) == 0
+    out, err = capsysbinary.readouterr()
+    _stdin(monkeypatch, disc)
+    main(["mesh", "-", "-o", str(tmp_path / f"a.{suffix}"), *more, "--quiet"])
+    assert out == (tmp_path / f"a.{suffix}").read_bytes()
+    assert err.startswith(b"-: ")
+    assert b"min_angle" in err
+    assert sorted(os.listdir(tmp_path)) == sorted(["disc.png", "stdin.ply", f"a.{suffix}"])
+
+
+def test_the_figure_of_an_image_on_stdin_shows_it(disc, tmp_path, monkeypatch):
+    seen = []
+    monkeypatch.setattr("img2tri.mesh.TriangleMesh.plot", lambda *given, **_: seen.append(given[1:]))
+    _stdin(monkeypatch, disc)
+    assert main(["mesh", "-", "--quiet", "--plot", str(tmp_path / "{stem}.png")]) == 0
+    assert (seen[0][0] == specimens.disc(40, 15) * 255).all()
+    assert seen[0][1] == str(tmp_path / "stdin.png")
+
+
+def test_stdin_to_stdout_as_processes(disc, tmp_path):
+    data = Path(disc).read_bytes()
+    done = _piped(data, "mesh", "-", "-o", "-", "--format", "stl", "--quiet", env=os.environ | {"TMPDIR": str(tmp_path)})
+    assert main(["mesh", disc, "-o", str(tmp_path / "a.stl"), "--quiet"]) == 0
+    assert (done.returncode, done.stdout, done.stderr) == (0, (tmp_path / "a.stl").read_bytes(), b"")
+    assert sorted(os.listdir(tmp_path)) == ["a.stl", "disc.png"]
+    judged = _piped(done.stdout, "quality", "-", "--format", "stl")
+    assert (judged.returncode, judged.stderr) == (0, b"")
+    assert judged.stdout.startswith(b"-: ")
+
+
+def test_stdin_beside_files_and_workers(disc, tmp_path):
+    other = _saved(specimens.disc(40, 12) * 255, tmp_path / "other.png")
+    data, out = Path(disc).read_bytes(), tmp_path / "out"
+    done = _piped(data, "mesh", other, "-", disc, "--out-dir", str(out), "--format", "stl", "--workers", "2")
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert [line.partition(b": ")[0].decode() for line in done.stdout.splitlines() if b" triangles, " in line] == [other, "-", disc]
+    assert (out / "stdin.stl").read_bytes() == (out / "disc.stl").read_bytes() != (out / "other.stl").read_bytes()
+    done = _piped(b"", "mesh", other, "-", disc, "--out-dir", str(out), "--workers", "2", "--quiet")
+    assert (done.returncode, done.stderr) == (2, b"img2tri: -: image: '<stdin>' is empty\nimg2tri: 1 of 3 images failed: -\n")
+
+
+def test_stdin_without_end_is_refused():
+    if not os.path.exists("/dev/zero"):
+        pytest.skip("no /dev/zero")
+    with open("/dev/zero", "rb") as zeros:
+        command = [sys.executable, "-m", "img2tri", "mesh", "-", "--max-pixels", "100000"]
+        done = subprocess.run(command, stdin=zeros, capture_output=True, text=True, check=False, timeout=60)
+    assert done.returncode == 2
+    assert "expected at most 1848576 bytes, 8 for each of --max-pixels 100000, found more in '<stdin>'" in done.stderr
+
+
+def test_max_pixels_holds_for_stdin(disc, monkeypatch, capsys):
+    _stdin(monkeypatch, disc)
+    assert main(["mesh", "-", "--max-pixels", "1599", "-o", "-", "--format", "ply"]) == 2
+    assert "expected at most --max-pixels 1599 pixels, found 40 x 40 in" in _complaint(capsys)
+    _stdin(monkeypatch, disc)
+    assert main(["mesh", "-", "--max-pixels", "1600", "-o", "-", "--format", "off", "--quiet"]) == 0
+
+
+@pytest.mark.parametrize(
+    ("typed", "said"),
+    [
+        (["mesh", "-"], "-: expected bytes on stdin, found a terminal; send a file there"),
+        (["view-report", "-", "-o", "-"], "-: expected bytes on stdin, found a terminal"),
+        (["quality", "-", "--format", "stl"], "-: expected bytes on stdin, found a terminal"),
+    ],
+)
+def test_a_terminal_gives_no_image(typed, said, disc, monkeypatch, capsys):
+    _stdin(monkeypatch, disc, terminal=True)
+    assert main(typed) == 2
+    assert said in _complaint(capsys)
+
+
+def test_no_stdin_and_no_stdout(disc, monkeypatch, capsys):
+    monkeypatch.setattr(sys, "stdin", None)
+    assert main(["mesh", "-"]) == 2
+    assert "-: expected bytes on stdin, found it closed" in _complaint(capsys)
+    monkeypatch.setattr(sys, "stdout", None)
+    assert main(["mesh", disc, "-o", "-", "--format", "stl"]) == 2
+    assert "-o -: expected a file or a pipe on stdout, found it closed" in _complaint(capsys)
+
+
+def test_without_stderr_stdout_stays_clean(disc, monkeypatch, capsysbinary):
+    monkeypatch.setattr(sys, "stderr", None)
+    assert main(["mesh", disc, "-o", "-", "--format", "stl"]) == 0
+    data = capsysbinary.readouterr().out
+    assert len(data) == 84 + 50 * int.from_bytes(data[80:84], "little")
+
+
+def test_a_terminal_is_not_sent_bytes(disc, monkeypatch, capsys):
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    assert main(["mesh", disc, "-o", "-", "--format", "stl"]) == 2
+    assert "-o -: expected a file or a pipe on stdout, found a terminal" in _complaint(capsys)
+    assert main(["mesh", disc, "-o", "-", "--format", "obj", "--quiet"]) == 0
+    assert "\nv " in capsys.readouterr().out
+
+
+def test_a_mesh_that_fails_sends_nothing(disc, capsys):
+    assert main(["mesh", disc, "--origin=1e8,0", "--edge-length", "4", "-o", "-", "--format", "stl"]) == 2
+    assert _complaint(capsys).startswith("img2tri: -: holds coordinates as float32")
+
+
+def test_a_reader_of_a_mesh_that_leaves_early_is_no_failure(disc):
+    command = [sys.executable, "-m", "img2tri", "mesh", disc, "-o", "-", "--format", "stl", "--quiet"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        process.stdout.close()
+        assert process.stderr.read() == ""
+    assert process.returncode == 0
+
+
+@pytest.mark.parametrize("typed", [["-o", "-", "--format", "stl"], []])
+def test_a_full_disk_behind_stdout_is_one_line(typed, disc):
+    if not os.path.exists("/dev/full"):
+        pytest.skip("no /dev/full")
+    with open("/dev/full", "wb") as full:
+        command = [sys.executable, "-m", "img2tri", "mesh", disc, *typed]
+        done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False, timeout=60)
+    assert done.returncode == 2
+    assert done.stderr.splitlines()[-1] == "img2tri: stdout: cannot be written: No space left on device"
+    assert "Traceback" not in done.stderr
+    assert "Exception" not in done.stderr
+
+
+def test_no_folder_for_a_moment(disc, monkeypatch, capsys):
+    def refuse(**_):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr("img2tri.commands.streams.TemporaryDirectory", refuse)
+    assert main(["mesh", disc, "-o", "-", "--format", "stl"]) == 2
+    assert "-: cannot be held for a moment: Permission denied; TMPDIR" in _complaint(capsys)
+
+
+def test_view_report_from_stdin_to_stdout(disc, tmp_path, monkeypatch, capsys):
+    page = tmp_path / "page.html"
+    _stdin(monkeypatch, disc)
+    assert main(["view-report", "-", "-o", "-", "--edge-length", "5"]) == 0
+    out, err = capsys.readouterr()
+    _stdin(monkeypatch, disc)
+    assert main(["view-report", "-", "-o", str(page), "--edge-length", "5"]) == 0
+    assert out.replace("-o -", "") == page.read_text(encoding="utf-8").replace(f"-o {page}", "")
+    assert "<title>stdin" in out
+    assert err.startswith("-: ")
+
+
+@pytest.mark.parametrize(
+    ("typed", "said"),
+    [
+        (["-"], "--format: expected with a mesh on stdin, and with nothing else, found none"),
+        (["a.stl", "--format", "stl"], "--format: expected with a mesh on stdin, and with nothing else, found stl"),
+        (["-", "-", "--format", "stl"], "-: expected once, as stdin is read once, found 2 times"),
+        (["-", "--format", "dwg"], "-: expected a name that ends in .bdf"),
+        (["-", "--format", "ply"], "-: cannot be read as .ply"),
+    ],
+)
+def test_quality_of_what_is_no_mesh_on_stdin(typed, said, disc, monkeypatch, capsys):
+    _stdin(monkeypatch, disc)
+    assert main(["quality", *typed]) == 2
+    assert said in _complaint(capsys)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 
@@ -58,3 +59,36 @@ def test_extrude_to_stl(tmp_path):
     assert found["width"] == pytest.approx(40, abs=0.1)
     assert found["height"] == pytest.approx(6)
     assert found["volume_over_area"] == pytest.approx(6)
+
+
+def test_effective_conductivity(tmp_path):
+    pytest.importorskip("skfem")
+    found = run("08_effective_conductivity", tmp_path)
+    assert found["inclusion: outlines, 4 px, quadratic"] <= 0.1
+    assert found["polycrystal: outlines, 4 px, quadratic"] <= 0.3
+    for kind in ("inclusion", "polycrystal"):
+        assert 3 * found[f"{kind}: outlines, 4 px, quadratic"] < found[f"{kind}: pixels, linear"]
+
+
+def test_polycrystal_stiffness(tmp_path):
+    found = run("09_polycrystal_stiffness", tmp_path)
+    assert found["kept"]
+    assert found["asymmetry"] < 1e-10
+    assert found["patch"] < 1e-10
+    assert found["least_step"] > 0.1  # GPa, between Reuss, tractions, periodic, displacements and Voigt
+    assert 0.005 < found["gap"] < 0.05
+    assert (tmp_path / "polycrystal_stiffness.png").stat().st_size > 50_000
+
+
+def test_pictures_of_the_readme(tmp_path):
+    """They are what the script draws, but for where single lines of a mesh lie: compared as thumbnails."""
+    sizes = run("10_pictures_of_the_readme", tmp_path)
+    assert max(sizes.values()) < 150_000
+    stored = {path.name for path in (EXAMPLES.parent / "data" / "pictures").iterdir()}
+    assert stored == set(sizes)
+    for name in stored:
+        drawn, shown = (Image.open(folder / name).convert("RGB") for folder in (tmp_path, EXAMPLES.parent / "data" / "pictures"))
+        assert drawn.size == shown.size
+        one, other = (np.asarray(picture.reduce(24), float) for picture in (drawn, shown))
+        assert abs(one - other).mean() < 4
+        assert abs(one - other).max() < 80

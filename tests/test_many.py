@@ -1,10 +1,17 @@
-"""Threads and processes: many meshes at once are the same as one after the other, and nothing global changes."""
+"""Threads, processes and workers: many meshes at once are the same as one after the other, and nothing global changes."""
 
 from __future__ import annotations
 
 import concurrent.futures
+import io
 import multiprocessing
+import os
+import signal
+import subprocess
+import sys
+import time
 import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +19,9 @@ import specimens
 from PIL import Image
 
 from img2tri import mesh_image
+from img2tri.cli import main
+from img2tri.commands import batch, telling
+from img2tri.commands.jobs import Job
 
 IMAGES = [specimens.disc(30 + k, 10.0 + k / 2).astype(bool) for k in range(4)]
 CASES = [(image, {"recipe": "conforming"}) for image in IMAGES] + [(image, {"recipe": "unstructured", "threshold": 0}) for image in IMAGES]
@@ -83,3 +93,167 @@ def test_the_image_stays_as_it_was(case):
     image.flags.writeable = False
     made((image, case[1]))
     assert (image == case[0]).all()
+
+
+# ---- img2tri mesh --workers ----
+
+# In every process that is started: what happens when files of certain names are opened.
+HOOK = """
+import os, signal, sys, time
+
+def hook(event, arguments):
+    name = str(arguments[0]) if event == "open" else ""
+    if name.endswith("kills.png"):
+        os.kill(os.getpid(), signal.SIGKILL)
+    if name.endswith("exits.png"):
+        os._exit(7)
+    if name.endswith("raises.png"):
+        raise ZeroDivisionError("a mistake")
+    if name.endswith("waits.png"):
+        os.close(os.open(f"{name}.{os.getpid()}", os.O_CREAT | os.O_WRONLY))
+        time.sleep(60)
+
+sys.addaudithook(hook)
+"""
+
+
+@pytest.fixture
+def hooked(tmp_path, monkeypatch):
+    folder = tmp_path / "hook"
+    folder.mkdir()
+    (folder / "sitecustomize.py").write_text(HOOK)
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(folder), *filter(None, sys.path)]))
+
+
+@pytest.fixture
+def images(tmp_path, monkeypatch):
+    """Names of images in the working folder, made when asked for."""
+    monkeypatch.chdir(tmp_path)
+
+    def written(*names):
+        for k, name in enumerate(names):
+            if name.startswith("bad"):
+                Path(name).write_bytes(b"not an image")
+            else:
+                Image.fromarray(IMAGES[k % len(IMAGES)]).save(name)
+        return list(names)
+
+    return written
+
+
+def contents(folder):
+    return {path.name: path.read_bytes() for path in Path(folder).iterdir() if path.is_file()}
+
+
+def test_workers_write_the_same_bytes_and_say_the_same_words(images, tmp_path, monkeypatch, capsys):
+    names = images("d.png", "bad1.png", "b.png", "a.png", "bad2.png", "c.png")
+    typed = ["--out-dir", "out", "--format", "stl", "--format", "ply", "-o", "{stem}.vtu", "--report", "{stem}.json"]
+    told = []
+    for workers in ("1", "2"):
+        folder = tmp_path / workers
+        folder.mkdir()
+        for name in names:
+            (folder / name).write_bytes((tmp_path / name).read_bytes())
+        monkeypatch.chdir(folder)
+        assert main(["mesh", *names, *typed, "--workers", workers]) == 2
+        told.append((capsys.readouterr(), contents("out"), contents(".")))
+    assert told[0] == told[1]
+    (out, err), written, others = told[0]
+    assert sorted(written) == sorted(f"{name}.{suffix}" for name in "abcd" for suffix in ("ply", "stl"))
+    assert set(others) - set(names) == {f"{name}.{suffix}" for name in "abcd" for suffix in ("vtu", "json")}
+    assert [line.partition(":")[0] for line in out.splitlines() if "triangles" in line] == ["d.png", "b.png", "a.png", "c.png"]
+    assert err.splitlines()[-1] == "img2tri: 2 of 6 images failed: bad1.png, bad2.png"
+    assert [line.split(": ")[1] for line in err.splitlines()[:-1]] == ["bad1.png", "bad2.png"]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals are those of POSIX")
+@pytest.mark.usefixtures("hooked")
+def test_a_worker_that_dies_fails_its_image_only(images, capsys):
+    names = images("kills.png", "a.png", "exits.png", "b.png")
+    assert main(["mesh", *names, "--out-dir", "out", "--workers", "2", "--quiet"]) == 2
+    assert sorted(contents("out")) == ["a.ply", "b.ply"]
+    assert capsys.readouterr().err.splitlines() == [
+        "img2tri: kills.png: the process that meshed it was ended by SIGKILL; if memory ran out, fewer --workers need less",
+        "img2tri: exits.png: the process that meshed it ended with status 7; if memory ran out, fewer --workers need less",
+        "img2tri: 2 of 4 images failed: kills.png, exits.png",
+    ]
+    assert not multiprocessing.active_children()
+
+
+@pytest.mark.usefixtures("hooked")
+def test_a_mistake_of_ours_in_a_worker_is_not_hidden(images):
+    # In the process itself no file is opened that way, so it must be a worker that raised.
+    jobs = [Job(name, {}) for name in images("raises.png", "a.png")]
+    with pytest.raises(RuntimeError, match=r"raises.png: a mistake in a worker\n(.*\n)*ZeroDivisionError: a mistake"):
+        list(batch.run(jobs, 2, lambda *_: None))
+    assert not multiprocessing.active_children()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals to groups of processes are those of POSIX")
+@pytest.mark.parametrize("workers", ["1", "2"])
+@pytest.mark.usefixtures("hooked")
+def test_ctrl_c_stops_all_workers_and_leaves_nothing(images, tmp_path, workers):
+    names = images("1waits.png", "2waits.png", "3waits.png")
+    command = [sys.executable, "-m", "img2tri", "mesh", *names, "--out-dir", "out", "--workers", workers]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True, text=True) as process:
+        deadline = time.monotonic() + 30
+        while len(waiting := list(tmp_path.glob("*waits.png.*"))) < int(workers) and time.monotonic() < deadline:
+            time.sleep(0.02)
+        os.killpg(process.pid, signal.SIGINT)  # as a terminal does
+        out, err = process.communicate(timeout=10)
+    assert (process.returncode, out, err) == (130, "", "")
+    assert len(waiting) == int(workers)
+    for path in waiting:
+        with pytest.raises(ProcessLookupError):
+            os.kill(int(path.name.rpartition(".")[2]), 0)
+    assert sorted({path.name for path in tmp_path.iterdir()} - {path.name for path in waiting}) == sorted([*names, "hook"])
+
+
+class _Terminal(io.StringIO):
+    def isatty(self):
+        return True
+
+
+@pytest.mark.parametrize("workers", ["1", "2"])
+def test_one_bar_for_all_images(workers, images, monkeypatch, capsys):
+    names = images("a.png", "bad.png", "b.png")
+    monkeypatch.setattr(telling, "PATIENCE", 0)
+    monkeypatch.setattr(sys, "stderr", _Terminal())
+    monkeypatch.setenv("TERM", "xterm")
+    assert main(["mesh", *names, "--out-dir", "out", "--workers", workers]) == 2
+    text = sys.stderr.getvalue()
+    assert "0 of 3 images, " in text
+    assert "3 of 3 images, " in text
+    # Words have a line to themselves.
+    assert "\nimg2tri: bad.png: " in text.replace("\x1b[2K", "\n")
+    assert "%" not in capsys.readouterr().out.replace("1 %", "").replace("99 %", "")
+
+
+def test_the_bar_only_goes_forward(images):
+    calls = []
+    jobs = [Job(name, {"edge_length": 8}) for name in images("a.png", "bad.png", "b.png")]
+    for workers in (1, 2):
+        calls.clear()
+        outcomes = list(batch.run(jobs, workers, lambda *call: calls.append(call)))
+        assert [outcome.image for outcome in outcomes] == ["a.png", "bad.png", "b.png"]
+        for number in range(3):
+            done = [fraction for k, _, fraction in calls if k == number]
+            assert done == sorted(done)
+            assert done[-1] == 1
+
+
+def test_as_many_workers_as_the_system_allows(images, monkeypatch, capsys):
+    def refuse(_):
+        raise BlockingIOError(11, "Resource temporarily unavailable")
+
+    monkeypatch.setattr(multiprocessing.context.SpawnProcess, "start", refuse)
+    assert main(["mesh", *images("a.png", "b.png"), "--out-dir", "out", "--workers", "2"]) == 2
+    assert "--workers: expected no more than the system allows" in capsys.readouterr().err
+    assert not Path("out").exists()
+
+
+def test_workers_are_a_whole_number_above_0(images, capsys):
+    for text in ("0", "-2"):
+        assert main(["mesh", *images("a.png"), "--out-dir", "out", f"--workers={text}"]) == 2
+        assert capsys.readouterr().err == f"img2tri: --workers: expected a whole number of at least 1, found {text}\n"
+        assert not Path("out").exists()

@@ -7,15 +7,12 @@ NIfTI, known by their content or else by their suffix, are read in ``medical``.
 
 from __future__ import annotations
 
-import io
 import math
-import os
-import stat
 import struct
 import threading
+import zlib
 from collections.abc import Iterator
-from contextlib import contextmanager
-from pathlib import Path
+from contextlib import contextmanager, suppress
 from typing import Any
 
 import numpy as np
@@ -24,6 +21,7 @@ from PIL import Image, UnidentifiedImageError
 from img2tri.errors import FileError, ImageError, Img2triError
 from img2tri.raster.checking import Pixels
 from img2tri.raster.pages import Decoded, check_page, turned
+from img2tri.raster.sources import Source
 from img2tri.raster.tags import exif, orientation, pixel_size, upright
 from img2tri.raster.tiff import decode_tiff
 
@@ -31,7 +29,9 @@ BITS, SAMPLE_FORMAT = 258, 339  # tags of TIFF
 TIFF_STARTS = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
 DRAWINGS = ("EPS", "WMF")
 MEDICAL = {".dcm": "DICOM", ".dicom": "DICOM", ".nii": "NIfTI", ".nii.gz": "NIfTI"}
-START = 348  # bytes that tell all formats apart
+GZIP = b"\x1f\x8b"  # NIfTI files are often compressed as a whole
+NIFTI_START = 348
+START = 1024  # bytes that tell all formats apart, also a NIfTI file that is compressed
 
 # Modes of Pillow whose arrays are the values in the file; the others become one of these.
 PLAIN_MODES = ("1", "L", "P", "RGB", "RGBA", "I", "F", "I;16", "I;16B", "I;16L", "I;16N")
@@ -41,12 +41,12 @@ _limit_lock = threading.Lock()
 _limits: list[float] = []  # Pillow's own limit, then those in force at the moment
 
 
-def decode(path: Path, page: int, max_pixels: int) -> Decoded:
+def decode(source: Source, page: int, max_pixels: int) -> Decoded:
     """Decode one image of a file.
 
     Parameters
     ----------
-    path
+    source
         The file.
     page
         Which image, frame or slice of a file with several, from 0.
@@ -67,59 +67,41 @@ def decode(path: Path, page: int, max_pixels: int) -> Decoded:
     ParameterError
         If it has no such page.
     """
-    start = _start(path)
+    start = source.start(START)
     try:
-        kind = _medical(path, start)
+        kind = _medical(source, start)
         if kind:
             from img2tri.raster.medical import decode_dicom, decode_nifti
 
-            return (decode_dicom if kind == "DICOM" else decode_nifti)(path, page, max_pixels)
-        if start[:4] in TIFF_STARTS and not _pillow_reads_tiff(path, page):
-            return decode_tiff(path, page, max_pixels)
-        return _decode(path, start, page, max_pixels)
+            return (decode_dicom if kind == "DICOM" else decode_nifti)(source, page, max_pixels)
+        if start[:4] in TIFF_STARTS and not _pillow_reads_tiff(source, page):
+            return decode_tiff(source, page, max_pixels)
+        return _decode(source, start, page, max_pixels)
     except Img2triError:
         raise
     except MemoryError as error:
         # Often only because of a length somewhere in a damaged file.
-        raise FileError(f"image: {str(path)!r} is damaged, or needs more memory than there is") from error
+        raise FileError(f"image: {str(source)!r} is damaged, or needs more memory than there is") from error
     except UnidentifiedImageError as error:
-        raise FileError(f"image: {str(path)!r} is not an image in a known format") from error
+        raise FileError(f"image: {str(source)!r} is not an image in a known format") from error
     except Image.DecompressionBombError as error:
         # The file holds a larger image than its header claims.
-        raise ImageError(f"image: expected at most max_pixels={max_pixels} pixels, found more in {str(path)!r} ({error})") from error
+        raise ImageError(f"image: expected at most max_pixels={max_pixels} pixels, found more in {str(source)!r} ({error})") from error
     except Exception as error:
         # Decoders meet damaged data with errors of every type.
-        raise FileError(f"image: {str(path)!r} is damaged or truncated ({error})") from error
+        raise FileError(f"image: {str(source)!r} is damaged or truncated ({error})") from error
 
 
-def _start(path: Path) -> bytes:
-    """Return the first bytes of a file, or say why there are none."""
-    try:
-        mode = path.stat().st_mode
-        if not stat.S_ISREG(mode):
-            # A pipe without a writer would be waited for without end, and none of these can be read twice.
-            what = "folder" if stat.S_ISDIR(mode) else "pipe or device"
-            raise FileError(f"image: expected a file, found the {what} {str(path)!r}")
-        with path.open("rb") as file:
-            start = file.read(START)
-    except Img2triError:
-        raise
-    except FileNotFoundError as error:
-        raise FileError(f"image: there is no file {str(path)!r}") from error
-    except (OSError, ValueError) as error:
-        raise FileError(f"image: {str(path)!r} cannot be opened ({error})") from error
-    if not start:
-        raise FileError(f"image: {str(path)!r} is empty")
-    return start
-
-
-def _medical(path: Path, start: bytes) -> str | None:
+def _medical(source: Source, start: bytes) -> str | None:
     """Tell a DICOM and a NIfTI file by its content, or by its suffix where that says nothing."""
     if start[128:132] == b"DICM":
         return "DICOM"
+    if start[:2] == GZIP:
+        with suppress(zlib.error):
+            start = zlib.decompressobj(wbits=zlib.MAX_WBITS | 16).decompress(start, NIFTI_START)
     if start[344:348] == b"n+1\0" or start[4:8] == b"n+2\0":
         return "NIfTI"
-    return next((kind for suffix, kind in MEDICAL.items() if path.name.lower().endswith(suffix)), None)
+    return next((kind for suffix, kind in MEDICAL.items() if str(source).lower().endswith(suffix)), None)
 
 
 @contextmanager
@@ -144,42 +126,32 @@ def _limit(pixels: float) -> Iterator[None]:
                 Image.MAX_IMAGE_PIXELS = None if usual == math.inf else int(usual)
 
 
-class _File(io.BufferedReader):
-    """A file that is never asked for more bytes than it has: a damaged length would make room for gigabytes first."""
-
-    def read(self, size: int | None = -1, /) -> bytes:
-        """Read `size` bytes, or what there is."""
-        if size is None or size < 0:
-            return super().read()
-        return super().read(min(size, max(0, os.fstat(self.fileno()).st_size - self.tell())))
-
-
 @contextmanager
-def _opened(path: Path, max_pixels: float = math.inf) -> Iterator[Image.Image]:
+def _opened(source: Source, max_pixels: float = math.inf) -> Iterator[Image.Image]:
     """Open a file with Pillow, whatever size it claims; what is decoded may have `max_pixels`.
 
     Pillow is not given the path, as it would map the file into memory, and scrambles turned TIFFs when it does (13.0).
     """
-    with _File(path.open("rb", buffering=0)) as file:
+    with source.open() as file:
         with _limit(math.inf):
             img = Image.open(file)
         with img, _limit(max_pixels):
             yield img
 
 
-def _decode(path: Path, start: bytes, page: int, max_pixels: int) -> Decoded:
-    with _opened(path, max_pixels) as img:
+def _decode(source: Source, start: bytes, page: int, max_pixels: int) -> Decoded:
+    with _opened(source, max_pixels) as img:
         kind = str(img.format)
         if kind in DRAWINGS:
-            raise FileError(f"image: {str(path)!r} is a drawing ({kind}), not pixels; convert it to PNG first")
+            raise FileError(f"image: {str(source)!r} is a drawing ({kind}), not pixels; convert it to PNG first")
         pages = int(getattr(img, "n_frames", 1))
-        notes = {"format": kind} | check_page(path, page, pages, *img.size, max_pixels)
+        notes = {"format": kind} | check_page(source, page, pages, *img.size, max_pixels)
         if page:
             img.seek(page)
-            check_page(path, page, pages, *img.size, max_pixels)
+            check_page(source, page, pages, *img.size, max_pixels)
         turn, size = orientation(exif(img)), pixel_size(img)
         img.load()
-        deep = _deep_png(path, start) if page == 0 else None
+        deep = _deep_png(source, start) if page == 0 else None
         values, palette = (deep, None) if deep is not None else _values(img)
         if palette is not None:
             notes["palette"] = palette
@@ -229,7 +201,7 @@ def _palette(img: Image.Image) -> Pixels:
     return np.vstack([table, np.broadcast_to(black, (max(0, 256 - len(table)), len(channels)))])
 
 
-def _deep_png(path: Path, start: bytes) -> Pixels | None:
+def _deep_png(source: Source, start: bytes) -> Pixels | None:
     """Return the values of a PNG with colours of 16 bit, of which Pillow keeps 8; None for any other image.
 
     Pillow has decoded the file before, so it is whole.
@@ -238,17 +210,19 @@ def _deep_png(path: Path, start: bytes) -> Pixels | None:
         return None
     import cv2
 
-    values: Pixels = np.asarray(cv2.imdecode(np.fromfile(path, np.uint8), cv2.IMREAD_UNCHANGED))
+    with source.open() as file:
+        whole = file.read()
+    values: Pixels = np.asarray(cv2.imdecode(np.frombuffer(whole, np.uint8), cv2.IMREAD_UNCHANGED))
     return values[..., [2, 1, 0, 3][: values.shape[2]]]  # OpenCV's order is blue, green, red
 
 
-def _pillow_reads_tiff(path: Path, page: int) -> bool:
+def _pillow_reads_tiff(source: Source, page: int) -> bool:
     """Tell whether Pillow has a mode for the values of a TIFF that loses nothing.
 
     Values of mode I and F come out in the wrong byte order if the file is big-endian and compressed (13.0).
     """
     try:
-        with _opened(path) as img:
+        with _opened(source) as img:
             if page < int(getattr(img, "n_frames", 1)):
                 img.seek(page)
             bits, kinds = set(img.tag_v2.get(BITS, (1,))), set(img.tag_v2.get(SAMPLE_FORMAT, (1,)))  # type: ignore[attr-defined]

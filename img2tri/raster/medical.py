@@ -17,8 +17,8 @@ each axis keeps the spacing noted for it. Where the axes of a NIfTI file point i
 
 from __future__ import annotations
 
+import gzip
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -26,18 +26,19 @@ import numpy as np
 from img2tri.errors import FileError, ImageError
 from img2tri.raster.checking import Pixels
 from img2tri.raster.pages import Decoded, check_page
+from img2tri.raster.sources import Source
 from img2tri.raster.tags import Size
 
 PIXEL_DATA = ("PixelData", "FloatPixelData", "DoubleFloatPixelData")
 MILLIMETRES = {"meter": 1000.0, "micron": 0.001}  # all else, unknown too, is taken as what it nearly always is
 
 
-def decode_dicom(path: Path, page: int, max_pixels: int) -> Decoded:
+def decode_dicom(source: Source, page: int, max_pixels: int) -> Decoded:
     """Decode one frame of a DICOM file.
 
     Parameters
     ----------
-    path, page, max_pixels
+    source, page, max_pixels
         See `decoding.decode`; pages are frames.
 
     Returns
@@ -59,14 +60,14 @@ def decode_dicom(path: Path, page: int, max_pixels: int) -> Decoded:
     try:
         import pydicom.pixels
     except ImportError as error:
-        raise FileError(f"image: {str(path)!r} is DICOM, which pydicom reads; install it with  pip install 'img2tri[dicom]'") from error
+        raise FileError(f"image: {str(source)!r} is DICOM, which pydicom reads; install it with  pip install 'img2tri[dicom]'") from error
     library: Any = pydicom
-    data = library.dcmread(path, force=True)
+    data = library.dcmread(source.path or source.open(), force=True)
     if "Rows" not in data or "Columns" not in data or not any(name in data for name in PIXEL_DATA):
-        raise FileError(f"image: {str(path)!r} is no DICOM file with an image in it, or it is truncated")
+        raise FileError(f"image: {str(source)!r} is no DICOM file with an image in it, or it is truncated")
     pages = int(data.get("NumberOfFrames") or 1)
-    notes = {"format": "DICOM"} | check_page(path, page, pages, data.Columns, data.Rows, max_pixels)
-    values = _stored(library, path, data, page, pages)
+    notes = {"format": "DICOM"} | check_page(source, page, pages, data.Columns, data.Rows, max_pixels)
+    values = _stored(library, source, data, page, pages)
     notes["photometric"] = str(data.get("PhotometricInterpretation", ""))
     if notes["photometric"] == "PALETTE COLOR":
         notes["palette"] = _palette(library, data, int(values.max()) + 1)
@@ -82,7 +83,7 @@ def decode_dicom(path: Path, page: int, max_pixels: int) -> Decoded:
     return values, notes, None
 
 
-def _stored(library: Any, path: Path, data: Any, page: int, pages: int) -> Pixels:
+def _stored(library: Any, source: Source, data: Any, page: int, pages: int) -> Pixels:
     """Return the stored values of a frame."""
     if "TransferSyntaxUID" not in data.file_meta:  # files from before there were headers
         implicit = data.original_encoding[0]
@@ -90,7 +91,7 @@ def _stored(library: Any, path: Path, data: Any, page: int, pages: int) -> Pixel
     decoder = library.pixels.get_decoder(data.file_meta.TransferSyntaxUID)
     if not decoder.is_available:
         needed = "; ".join(decoder.missing_dependencies)
-        raise FileError(f"image: {str(path)!r} is compressed ({decoder.UID.name}), for which pydicom needs a plugin: {needed}")
+        raise FileError(f"image: {str(source)!r} is compressed ({decoder.UID.name}), for which pydicom needs a plugin: {needed}")
     if data.get("BitsAllocated") == 1 and pages > 1:
         # Frames of a mask packed into bits may begin within a byte, where pydicom (3.0) does not reach them one by one.
         return np.asarray(library.pixels.pixel_array(data)[page])
@@ -120,12 +121,12 @@ def _palette(library: Any, data: Any, count: int) -> Pixels:
     return colours if colours.dtype == np.uint8 else (colours >> 8).astype(np.uint8)
 
 
-def decode_nifti(path: Path, page: int, max_pixels: int) -> Decoded:
+def decode_nifti(source: Source, page: int, max_pixels: int) -> Decoded:
     """Decode one slice of a NIfTI file.
 
     Parameters
     ----------
-    path, page, max_pixels
+    source, page, max_pixels
         See `decoding.decode`. Pages run through the third axis first, then through the fourth (time) and all others: slice k
         at time t of an array (nx, ny, nz, nt) is page k + nz * t.
 
@@ -148,20 +149,20 @@ def decode_nifti(path: Path, page: int, max_pixels: int) -> Decoded:
     try:
         import nibabel
     except ImportError as error:
-        raise FileError(f"image: {str(path)!r} is NIfTI, which nibabel reads; install it with  pip install 'img2tri[nifti]'") from error
+        raise FileError(f"image: {str(source)!r} is NIfTI, which nibabel reads; install it with  pip install 'img2tri[nifti]'") from error
     library: Any = nibabel
-    with library.openers.ImageOpener(str(path)) as file:
+    with _unpacked(library, source) as file:
         kind = library.Nifti2Image if file.read(8)[4:7] == b"n+2" else library.Nifti1Image
         file.seek(0)
         noted = kind.header_class.from_fileobj(file, check=False)
-    holder = library.FileHolder(str(path))
+    holder = library.FileHolder(str(source.path)) if source.path else library.FileHolder(fileobj=_unpacked(library, source))
     with library.imageglobals.LoggingOutputSuppressor():  # else nibabel tells stderr what it mends, such as sizes of 0
         image = kind.from_file_map({"image": holder, "header": holder})
     shape = tuple(int(n) for n in image.shape)
     if len(shape) < 2 or min(shape) < 1:
-        raise ImageError(f"image: expected an array of at least two axes in {str(path)!r}, found shape {shape}")
+        raise ImageError(f"image: expected an array of at least two axes in {str(source)!r}, found shape {shape}")
     width, height, *others = shape
-    notes = {"format": "NIfTI"} | check_page(path, page, math.prod(others), width, height, max_pixels)
+    notes = {"format": "NIfTI"} | check_page(source, page, math.prod(others), width, height, max_pixels)
     notes["axes"] = "".join(code or "?" for code in library.aff2axcodes(image.affine))
     # Only what is asked for is read.
     values = np.asarray(image.dataobj[(slice(None), slice(None), *map(int, np.unravel_index(page, others, order="F")))])
@@ -171,6 +172,14 @@ def decode_nifti(path: Path, page: int, max_pixels: int) -> Decoded:
     # Sizes are kept in 32 bits; the shortest number that is the same there is the one meant: 0.7, not 0.699999988.
     dx, dy = (scale * abs(float(str(zoom))) for zoom in noted.get_zooms()[:2])
     return np.ascontiguousarray(values.swapaxes(0, 1)[::-1]), notes, _size(dx, dy)
+
+
+def _unpacked(library: Any, source: Source) -> Any:
+    """Open a NIfTI file, which may be compressed."""
+    if source.path:
+        return library.openers.ImageOpener(str(source.path))
+    file = source.open()
+    return gzip.GzipFile(fileobj=file) if source.data[:2] == b"\x1f\x8b" else file
 
 
 def _size(dx: Any, dy: Any) -> Size | None:

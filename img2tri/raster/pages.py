@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 from img2tri.errors import ImageError, ParameterError, shown
 from img2tri.raster.checking import Pixels
+from img2tri.raster.sources import Source
 from img2tri.raster.tags import Size
 
 Decoded = tuple[Pixels, dict[str, Any], Size | None]
 """Pixels, notes, and the size of a pixel (dx, dy) in millimetres if the file knows it."""
 
 
-def check_page(path: Path, page: int, pages: int, width: int, height: int, max_pixels: int) -> dict[str, Any]:
+def check_page(source: Source, page: int, pages: int, width: int, height: int, max_pixels: int) -> dict[str, Any]:
     """Check page and size before anything is decoded, and note the page."""
     if page >= pages:
-        raise ParameterError(f"page: expected 0 to {pages - 1} in {str(path)!r}, found {shown(page)}")
+        raise ParameterError(f"page: expected 0 to {pages - 1} in {str(source)!r}, found {shown(page)}")
     if width * height > max_pixels:
         raise ImageError(
-            f"image: expected at most max_pixels={max_pixels} pixels, found {width} x {height} in {str(path)!r}; "
+            f"image: expected at most max_pixels={max_pixels} pixels, found {width} x {height} in {str(source)!r}; "
             "raise max_pixels if the file can be trusted"
         )
     return {"pages": pages, "page": page} if pages > 1 else {}

@@ -1,4 +1,4 @@
-"""A path, an array or a ``pyvista.ImageData`` -> a `Picture`: the values as they are, and where they lie in the world.
+"""A file, an array or a ``pyvista.ImageData`` -> a `Picture`: the values as they are, and where they lie in the world.
 
 Nothing is scaled, thresholded or turned into gray here, so label numbers, 16-bit values and palette indices survive.
 Files are decoded by Pillow rather than by ``cv2.imread``, which hides much of what matters: it hands out a partial image for a
@@ -9,14 +9,13 @@ NIfTI come through pydicom and nibabel.
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 from img2tri.errors import ParameterError, finite, integer, shown
 from img2tri.raster.checking import pixels
 from img2tri.raster.imagedata import from_image_data, is_image_data
+from img2tri.raster.sources import is_file, source
 from img2tri.records import Frame, Picture
 
 Pair = tuple[float, float]
@@ -38,8 +37,9 @@ def read(
     Parameters
     ----------
     image
-        A path (str or PathLike); an array (h, w) or (h, w, 3 or 4) of bool, integers or floats; or a planar
-        ``pyvista.ImageData``, whose active scalars are taken (its first ones if none are active).
+        A path (str or PathLike), or a file opened in binary mode, which is read to its end; an array (h, w) or (h, w, 3 or 4)
+        of bool, integers or floats; or a planar ``pyvista.ImageData``, whose active scalars are taken (its first ones if none are
+        active).
     spacing
         The size of a pixel in world units: a number, a pair (dx, dy), or "file", which takes the size or resolution noted in a
         TIFF, PNG, JPEG, DICOM or NIfTI file, in millimetres. None is "file" for DICOM and NIfTI, if they note a size; 1 for
@@ -50,7 +50,8 @@ def read(
     page
         Which image of a file with several, from 0: a page, a frame, a slice across the third axis of a NIfTI file.
     max_pixels
-        A file that claims more pixels than this is refused before it is decoded, so that a small file cannot fill the memory.
+        A file that claims more pixels than this is refused before it is decoded, so that a small file cannot fill the memory; so
+        is an open file that gives more than 8 bytes for each, and 1 MiB.
 
     Returns
     -------
@@ -65,9 +66,9 @@ def read(
     FileError
         If the file is missing, a folder, not an image, damaged or truncated; if it needs a library that is not installed.
     ImageError
-        If the values are not those of an image: wrong shape or type, no pixels, NaN or infinite, too many pixels.
+        If the values are not those of an image: wrong shape or type, no pixels, NaN or infinite, too many pixels or bytes.
     ParameterError
-        If `spacing`, `origin`, `page` or `max_pixels` is not as described.
+        If `spacing`, `origin`, `page` or `max_pixels` is not as described, or a file is opened as text.
 
     Examples
     --------
@@ -83,20 +84,21 @@ def read(
         return from_image_data(image)
     corner, upward = _corner(origin)
     notes: dict[str, Any] = {}
-    if isinstance(image, (str, os.PathLike)):
+    if is_file(image):
         from img2tri.raster.decoding import decode  # Pillow is loaded for files only
 
-        source = str(Path(image))
-        values, notes, noted = decode(Path(image), page, max_pixels)
+        file = source(image, max_pixels=max_pixels)
+        values, notes, noted = decode(file, page, max_pixels)
+        name = str(file)
     else:
-        source, noted = "array", None
+        name, noted = "array", None
         if page:
             raise ParameterError(f"page: expected 0 for an array, which is one image, found {shown(page)}")
         values = image
     values = pixels(values)
     if spacing is None and noted is not None and notes.get("format") in CARRY_SPACING:
         spacing = "file"
-    size = _spacing(spacing, noted, source)
+    size = _spacing(spacing, noted, name)
     if isinstance(spacing, str):
         notes["spacing"] = spacing
     h, w = values.shape[:2]
@@ -107,7 +109,7 @@ def read(
             f"found {corner}; "
             "beyond, numbers of 64 bits have no places for the vertices. Move the mesh afterwards"
         )
-    return Picture(values, frame, source, notes)
+    return Picture(values, frame, name, notes)
 
 
 def _spacing(spacing: float | Sequence[float] | str | None, noted: Pair | None, source: str) -> Pair:

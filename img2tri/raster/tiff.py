@@ -2,33 +2,32 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 
 from img2tri.errors import FileError, ImageError
 from img2tri.raster.checking import Pixels
 from img2tri.raster.pages import Decoded, check_page, turned
+from img2tri.raster.sources import Source
 from img2tri.raster.tags import millimetres, orientation, upright
 
 MOST_SAMPLES = 4  # red, green, blue and alpha
 ASSOCIATED = 1  # TIFF's word for colours multiplied by their alpha
 
 
-def decode_tiff(path: Path, page: int, max_pixels: int) -> Decoded:
+def decode_tiff(source: Source, page: int, max_pixels: int) -> Decoded:
     """Decode a TIFF of a type Pillow has no mode for: int64, float64, int8, colours of 16 bit."""
     try:
         import tifffile
     except ImportError as error:
-        raise FileError(f"image: {str(path)!r} is a TIFF only tifffile can read; install it with  pip install 'img2tri[tiff]'") from error
-    with tifffile.TiffFile(path) as file:
+        raise FileError(f"image: {str(source)!r} is a TIFF only tifffile can read; install it with  pip install 'img2tri[tiff]'") from error
+    with tifffile.TiffFile(source.path or source.open()) as file:
         pages = len(file.pages)
         sheet = file.pages[min(page, pages - 1)].aspage()
         # A volume counts with all its layers.
         high = sheet.imagelength * sheet.imagedepth
-        notes = {"format": "TIFF"} | check_page(path, page, pages, sheet.imagewidth, high, max_pixels)
+        notes = {"format": "TIFF"} | check_page(source, page, pages, sheet.imagewidth, high, max_pixels)
         if sheet.samplesperpixel > MOST_SAMPLES:
-            raise ImageError(f"image: expected at most {MOST_SAMPLES} values per pixel, found {sheet.samplesperpixel} in {str(path)!r}")
+            raise ImageError(f"image: expected at most {MOST_SAMPLES} values per pixel, found {sheet.samplesperpixel} in {str(source)!r}")
         values = np.asarray(sheet.asarray())
         tags = {tag.code: tag.value for tag in sheet.tags}
         colormap, multiplied = sheet.colormap, tuple(sheet.extrasamples) == (ASSOCIATED,)

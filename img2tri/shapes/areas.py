@@ -15,7 +15,8 @@ from img2tri.shapes.drafts import Draft
 from img2tri.shapes.links import pixel_areas
 from img2tri.shapes.unrolling import cross
 
-AREA = 0.003  # of the smaller region beside a chain: what it may lack before it gets another break
+AREA = 0.003  # of the smaller region beside a chain: what it may lack before it gets more breaks
+GREAT = 0.8  # of the greatest lens of a chain: those that get the breaks
 SMALL = 16  # pixels: the area of smaller regions is not looked after
 
 
@@ -24,7 +25,7 @@ def keep_areas(d: Draft, *, tolerance: float) -> Draft:
 
     A chord on a curve cuts a lens off. Each break takes up half of the lenses beside it; what then is missing of a chain, since
     some breaks cannot move, is shared evenly by the others. No break ends farther from the outline than half the tolerance. Where
-    that leaves a small region with too much or too little, a break is added, to be moved the next time.
+    that leaves a small region with too much or too little, breaks are added, to be moved the next time.
     """
     first, last = d.pieces
     place, z = d.places, (d.outlines.points[:, 0] + 1j * d.outlines.points[:, 1])[d.outlines.indices]
@@ -86,9 +87,10 @@ def _smaller_side(d: Draft) -> Floats:
 
 
 def _middles(d: Draft, first: Ints, last: Ints, lens: Floats, chosen: Bools) -> Ints:
-    """Middle entry of the piece with the greatest lens, in each of the chosen chains that have one to split."""
+    """Middle entries of the pieces with the greatest lenses, in each of the chosen chains that have one to split."""
     chain = d.links.chain[first]
     able = np.flatnonzero(chosen[chain] & (last - first > 1))
-    able = able[np.lexsort((-lens[able], chain[able]))]
-    able = able[np.flatnonzero(np.diff(chain[able], prepend=-1))]
+    greatest = np.zeros(len(chosen))
+    np.maximum.at(greatest, chain[able], lens[able])
+    able = able[lens[able] >= GREAT * greatest[chain[able]]]
     return (first[able] + last[able]) // 2

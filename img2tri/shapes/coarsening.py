@@ -35,6 +35,8 @@ def settle(d: Draft, *, tolerance: float) -> Draft:
     d = _copied(d)
     while True:
         _split_bulging(d, tolerance)
+        if _return_to_points(d, tolerance):
+            continue
         first, last = d.pieces
         fresh = d.tested[first] != last
         if not fresh.any():
@@ -101,6 +103,20 @@ def _split_bulging(d: Draft, tolerance: float) -> None:
         highest[some] = worst
         split = at[(distance == highest[which]) & (highest[which] > tolerance)]
         d.breaks[split] = True
+
+
+def _return_to_points(d: Draft, tolerance: float) -> bool:
+    """Let breaks that were moved along their chain go back, where their own point lies too far from the pieces they end."""
+    first, last = d.pieces
+    z, place = d.dense[d.outlines.indices], d.places
+    distance = np.full(len(z), np.inf)
+    for end in (first, last):
+        distance[end] = np.minimum(distance[end], to_segment(z[end], place[first], place[last]))
+    back = (np.abs(d.moved) > tolerance) & (distance > tolerance) & np.isfinite(distance)
+    d.moved[back] = 0
+    stale = first[back[first] | back[last]]
+    d.measured[stale] = d.tested[stale] = -1
+    return bool(back.any())
 
 
 def _split(d: Draft, first: Ints, last: Ints) -> None:

@@ -23,8 +23,8 @@ ROUND = 11.0  # px: lines of this length may meet at one radian on a circle, wit
 SHORTEST = 6.0  # px, the least length of a line that is not along rows or columns
 ALIGNED = 2.9  # px, the least length of one that is
 EXACT = 1e-6  # px, greatest distance of crossings from a line along rows or columns
-SLOPPY = 0.05  # of the link: how far a line may miss the range of a crossing
-BEYOND = 1.8  # of the room in its block: how far out a corner may lie, it is then put back into the block
+SLOPPY = 0.09  # of the link: how far a line may miss the range of a crossing
+BEYOND = 1.65  # of the room in its block: how far out a corner may lie, it is then put back into the block
 SAME = 4  # crossings within which only one corner is kept
 
 

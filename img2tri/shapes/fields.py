@@ -118,6 +118,8 @@ def _limited(grid: Floats, growth: float) -> Floats:
     result = grid
     for level in low * SCALE ** np.arange(np.ceil(np.log(high / low) / np.log(SCALE)) if high > low else 0):
         far = (grid > level * SCALE**0.5).astype(np.uint8)
-        distance = cv2.distanceTransform(far, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
-        result = np.minimum(result, level * SCALE**0.5 + growth * np.asarray(distance, np.float64)) if far.any() else result
+        if far.any():
+            # The last bit depends on how many threads shared the work: distances are roots of whole numbers.
+            distance = np.sqrt(np.rint(np.square(cv2.distanceTransform(far, cv2.DIST_L2, cv2.DIST_MASK_PRECISE), dtype=np.float64)))
+            result = np.minimum(result, level * SCALE**0.5 + growth * distance)
     return np.minimum(result, grid)

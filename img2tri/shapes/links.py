@@ -19,7 +19,7 @@ from img2tri.shapes.chains import trace
 from img2tri.shapes.cracks import NODE, Cracks
 from img2tri.shapes.unrolling import Points, cross
 
-REACH = 0.45  # of the link from its middle, to either side: no crossing comes nearer to a pixel centre
+REACH = 0.49  # of the link from its middle, to either side: no crossing comes nearer to a pixel centre
 
 
 @dataclass(frozen=True, eq=False)

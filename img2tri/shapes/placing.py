@@ -68,7 +68,7 @@ def _known(links: Links, frame: Frame, gray: NDArray[Any] | None, level: float |
 def _sliding(links: Links, points: Points, shift: Floats, slack: Floats) -> Sliding:
     """Points shifted to where they are known to lie, with the ranges that are left to them."""
     low, high = np.maximum(-slack, -REACH - shift), np.minimum(slack, REACH - shift)
-    return Sliding(points + shift * links.axis, links.axis, low, high, links.indices, links.starts, links.rings)
+    return Sliding(points + shift * links.axis, links.axis, low, high, slack, links.indices, links.starts, links.rings)
 
 
 def _pixels_swept(points: Points, links: Links) -> Floats:

@@ -25,8 +25,16 @@ class Unrolled:
         (k,) the point each place on the line stands for.
     own
         (k,) bool, the place belongs to the chain itself, not to a continuation; each crossing has one such place.
+    original
+        (k,) the own place each place repeats.
+    sign
+        (k,) -1 where the chain is turned, else 1.
+    chain
+        (k,) which of the chosen chains it is.
     ring
         (k,) bool, the chain is a ring.
+    node
+        (k,) bool, the own places at the ends of open chains.
     """
 
     def __init__(self, indices: Ints, starts: Ints, rings: Bools, chosen: Bools, reach: int) -> None:
@@ -35,14 +43,17 @@ class Unrolled:
         steps = np.diff(starts)[chains] - 1  # from the first point to the last; a ring's last is its first again
         length = steps + np.where(ring, 0, 1) + 2 * reach
         which = np.repeat(np.arange(len(chains)), length)
-        place = np.arange(len(which)) - np.repeat(np.cumsum(length) - length, length) - reach
+        begin = (np.cumsum(length) - length)[which] + reach
+        place = np.arange(len(which)) - begin
         turns, rest = np.divmod(place, np.where(ring, 1, 2)[which] * steps[which])
         turned = rest > steps[which]
-        self.source = indices[first[which] + np.where(turned, 2 * steps[which] - rest, rest)]
-        self.ring = ring[which]
+        along = np.where(turned, 2 * steps[which] - rest, rest)
+        self.source, self.original = indices[first[which] + along], begin + along
+        self.chain, self.ring = which, ring[which]
         self.own = (place >= 0) & (place < (length - 2 * reach)[which])
+        self.node = ~self.ring & ((place == 0) | (place == steps[which]))
         # A turn about the last node Z and one about the first node A move a point by 2 (Z - A).
-        self._sign = np.where(turned, -1.0, 1.0)
+        self.sign = np.where(turned, -1.0, 1.0)
         self._first, self._last = indices[first[which]], indices[first[which] + steps[which]]
         self._from_first = np.where(ring[which], 0.0, -2.0 * turns)
         self._from_last = np.where(ring[which], 0.0, 2.0 * turns + 2.0 * turned)
@@ -50,7 +61,7 @@ class Unrolled:
     def points(self, z: Points) -> Points:
         """Lay points out on the line, (n,) to (k,)."""
         beyond = np.flatnonzero((self._from_first != 0) | (self._from_last != 0))
-        line: Points = self._sign * z[self.source]
+        line: Points = self.sign * z[self.source]
         line[beyond] += self._from_first[beyond] * z[self._first[beyond]] + self._from_last[beyond] * z[self._last[beyond]]
         return line
 

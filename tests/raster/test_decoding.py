@@ -451,3 +451,27 @@ def test_the_limit_of_pillow_is_set_aside_and_kept(tmp_path, monkeypatch):
     monkeypatch.setattr(Image, "MAX_IMAGE_PIXELS", 4)
     same(read(tmp_path / "image.png").values, GRAY8)
     assert Image.MAX_IMAGE_PIXELS == 4
+
+
+def test_tiff_of_many_bands_is_refused(tmp_path):
+    tifffile.imwrite(tmp_path / "image.tif", np.zeros((13, 17, 5), np.float64), photometric="minisblack", planarconfig="contig")
+    with pytest.raises(ImageError, match=r"expected at most 4 values per pixel, found 5 in '.*image\.tif'"):
+        read(tmp_path / "image.tif")
+
+
+def test_an_icon_larger_than_it_claims_is_refused(tmp_path):
+    large = png([b"\0"], 20_000, 20_000, 8, 0)
+    part = b"ic07" + struct.pack(">I", 8 + len(large)) + large  # which claims 128 x 128
+    (tmp_path / "image.icns").write_bytes(b"icns" + struct.pack(">I", 8 + len(part)) + part)
+    with pytest.raises(ImageError, match=r"expected at most max_pixels=20000 pixels, found more in '.*image\.icns'"):
+        read(tmp_path / "image.icns", max_pixels=20_000)
+
+
+def test_a_file_that_asks_for_more_memory_than_there_is(tmp_path, monkeypatch):
+    def full(_img):
+        raise MemoryError
+
+    Image.fromarray(GRAY8).save(tmp_path / "image.png")
+    monkeypatch.setattr("PIL.ImageFile.ImageFile.load", full)
+    with pytest.raises(FileError, match=r"image\.png' is damaged, or needs more memory than there is"):
+        read(tmp_path / "image.png")

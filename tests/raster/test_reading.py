@@ -143,6 +143,14 @@ def test_bad_spacing(spacing):
         read(ROWS, spacing=spacing)
 
 
+@pytest.mark.parametrize("spacing", [1e-101, 1e101, (1, 1e-200), (1e200, 1)])
+def test_spacing_whose_squares_are_no_numbers(spacing):
+    with pytest.raises(ParameterError, match=r"^spacing: expected numbers from 1e-100 to 1e100, found .*; choose another unit"):
+        read(ROWS, spacing=spacing)
+    for size in (1e-100, 1e100):
+        assert read(ROWS, spacing=size).frame.spacing == (size, size)
+
+
 def test_an_array_has_no_spacing_of_a_file():
     with pytest.raises(ParameterError, match="spacing: 'file' expected a resolution with a unit in 'array', found none; give the size"):
         read(ROWS, spacing="file")

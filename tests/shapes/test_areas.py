@@ -71,6 +71,13 @@ def test_after_some_rounds_the_areas_are_kept(name, spacing, most):
     assert area_error(kept(d, 1)) <= max(4 * most, area_error(d) / 5)
 
 
+@pytest.mark.parametrize("spacing", [3.0, 6.0, 12.0])
+def test_on_a_disc_one_round_leaves_the_square_of_the_error(spacing):
+    """Chords lose a share e of the disc; breaks that move outwards by half of it win e, and by then turn a little: e^2 / 2 is left."""
+    d = settled(SMOOTH["disc"], spacing)
+    assert area_error(keep_areas(d, tolerance=2.0)) == pytest.approx(area_error(d) ** 2 / 2, rel=0.1)
+
+
 @pytest.mark.parametrize("tolerance", [0.1, 0.5, 2.0])
 @pytest.mark.parametrize("name", SMOOTH)
 def test_no_break_ends_much_farther_from_the_outline_than_half_the_tolerance(name, tolerance):

@@ -24,15 +24,12 @@ SHAPES = {
     "spiral": specimens.spiral(),
     "one pixel": specimens.MASKS["one pixel"],
 }
-BEYOND_ENDS = pytest.mark.xfail(
-    strict=True, raises=AssertionError, reason="near its ends, whether a scale fits a chain is judged with points of the next one"
-)
 
 
 def sliding(labels, reach=REACH):
     links = lay_out(find_cracks(labels), Frame(labels.shape))
     low = np.where(links.axis == 0, 0.0, -reach)
-    return Sliding(links.middle, links.axis, low, -low, links.indices, links.starts, links.rings)
+    return Sliding(links.middle, links.axis, low, -low, np.full(len(low), REACH), links.indices, links.starts, links.rings)
 
 
 def moved(s, shift):
@@ -94,11 +91,11 @@ def test_corners_are_spared_and_sides_stay_straight():
     off = np.minimum.reduce([abs(z.real - 5), abs(z.real - 65), abs(z.imag - 5), abs(z.imag - 45)])
     from_corner = np.min([abs(z - corner) for corner in (5 + 5j, 65 + 5j, 5 + 45j, 65 + 45j)], axis=0)
     assert off[from_corner > 1].max() < 0.1
-    assert off[from_corner > 8].max() < 0.01
+    assert off[from_corner > 8].max() < 0.03
 
 
 def test_a_wide_curve_is_found_far_better_than_its_steps():
-    for radius, most in ((20, 0.13), (40, 0.1), (80, 0.08), (150, 0.08)):
+    for radius, most in ((20, 0.05), (40, 0.05), (80, 0.05), (150, 0.055)):
         n = 2 * radius + 20
         s = sliding(specimens.disc(n, radius, (n / 2 + 0.3, n / 2 - 0.2)))
         off = np.abs(moved(s, widest_fit(s)) - (n / 2 - 0.2 + 1j * (n / 2 - 0.3))) - radius
@@ -108,7 +105,6 @@ def test_a_wide_curve_is_found_far_better_than_its_steps():
 # ---- chains are on their own ----
 
 
-@BEYOND_ENDS
 @pytest.mark.parametrize("name", ["ellipse", "disc"])
 def test_where_a_ring_begins_does_not_matter(name):
     s = sliding(SHAPES[name])
@@ -117,7 +113,6 @@ def test_where_a_ring_begins_does_not_matter(name):
         np.testing.assert_allclose(widest_fit(begun_elsewhere(s, at)), expected, atol=1e-9)
 
 
-@BEYOND_ENDS
 def test_a_ring_knows_nothing_of_another_one():
     discs = np.concatenate([SHAPES["disc"], np.zeros((40, 200), int), SHAPES["disc"], np.zeros((40, 4), int)], axis=1)
     s = sliding(discs)
@@ -128,7 +123,6 @@ def test_a_ring_knows_nothing_of_another_one():
         np.testing.assert_allclose(widest_fit(some_chains(s, [ring]))[own], together[own], atol=1e-9)
 
 
-@BEYOND_ENDS
 def test_an_open_chain_knows_nothing_of_another_one():
     s = sliding(SHAPES["polycrystal"])
     together = widest_fit(s)
@@ -139,7 +133,7 @@ def test_an_open_chain_knows_nothing_of_another_one():
         np.testing.assert_allclose(alone[own], together[own], atol=1e-9)
 
 
-@pytest.mark.parametrize("name", [pytest.param("ellipse", marks=BEYOND_ENDS), "disc", "polycrystal"])
+@pytest.mark.parametrize("name", ["ellipse", "disc", "polycrystal"])
 def test_the_direction_of_chains_does_not_matter(name):
     s = sliding(SHAPES[name])
     turned = replace(s, indices=s.indices[::-1], starts=len(s.indices) - s.starts[::-1], rings=s.rings[::-1])

@@ -129,3 +129,14 @@ def test_what_is_no_plane_mesh_of_triangles_is_refused(mesh):
 def test_it_is_registered_once_on_images_and_surfaces():
     found = [(entry.name, entry.target) for entry in pv.registered_accessors() if entry.name == "img2tri"]
     assert sorted(found, key=str) == sorted([("img2tri", pv.ImageData), ("img2tri", pv.PolyData)], key=str)
+
+
+def test_quality_is_measured_anew_only_where_it_was_before():
+    mesh = pv.Plane(i_resolution=4, j_resolution=4).triangulate()
+    mesh.clear_data()
+    mesh.points[12] += (0.1, 0.05, 0)
+    assert "q" not in mesh.img2tri.smooth("uniform").cell_data
+    mesh.cell_data["q"] = np.zeros(mesh.n_cells)
+    smooth = mesh.img2tri.smooth("uniform")
+    assert smooth.cell_data["q"] == pytest.approx(smooth.img2tri.quality().arrays["q"])
+    assert not mesh.cell_data["q"].any()

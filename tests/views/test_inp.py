@@ -221,7 +221,8 @@ def test_plane_elements_lie_at_zero(kind):
 def test_texts_are_comments():
     lines = inp(made("triangle"))[""].decode().splitlines()
     assert lines[:2] == ["** written by img2tri", "** units: mm"]
-    comments = [line[3:] for line in lines[2 : lines.index("*NODE")] if "named" not in line]
+    assert '** labels: {"region_minus1": -1, "bone": 4}' in lines
+    comments = [line[3:] for line in lines[2 : lines.index("*NODE")] if "named" not in line and "labels" not in line]
     assert "".join(line.removeprefix("   ") for line in comments) == f"img2tri: {TEXTS['img2tri']}"
 
 

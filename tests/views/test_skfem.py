@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import sys
+
 import numpy as np
 import pytest
 import specimens
 
-from img2tri import mesh_image
+from img2tri import FileError, mesh_image
 
 pytest.importorskip("skfem")
 
@@ -31,3 +33,9 @@ def test_vertices_and_triangles_are_those_of_the_mesh():
     fem = mesh.to_skfem()
     assert np.array_equal(fem.p.T, mesh.vertices)
     assert np.array_equal(np.sort(fem.t.T, axis=1), np.sort(mesh.triangles, axis=1))
+
+
+def test_without_scikit_fem_it_says_how_to_install_it(monkeypatch):
+    monkeypatch.setitem(sys.modules, "skfem", None)
+    with pytest.raises(FileError, match=r"to_skfem: expected scikit-fem to be installed, found it is not; pip install 'img2tri\[fem\]'"):
+        mesh_image(specimens.disc(), edge_length=5).to_skfem()

@@ -97,6 +97,25 @@ def test_a_missing_folder_is_named(tmp_path):
         save(tmp_path / "none" / "a.stl", *ring())
 
 
+@pytest.mark.parametrize("lacking", ["O_TMPFILE", "/proc/self/fd", "support of the folder"])
+def test_without_files_that_have_no_name_it_works_alike(old, monkeypatch, lacking):
+    old.chmod(0o640)
+    if lacking == "O_TMPFILE":
+        monkeypatch.delattr(storing.os, "O_TMPFILE", raising=False)
+    elif lacking == "/proc/self/fd":
+        monkeypatch.setattr(storing.os.path, "isdir", lambda path: path != lacking and os.stat(path) and True)
+    else:
+
+        def refuse(*_):
+            raise OSError(errno.EOPNOTSUPP, "Operation not supported")
+
+        monkeypatch.setattr(storing.os, "open", refuse)
+    store(old, b"new")
+    assert old.read_bytes() == b"new"
+    assert stat.S_IMODE(old.stat().st_mode) == 0o640
+    assert list(old.parent.iterdir()) == [old]
+
+
 def test_a_file_in_place_of_the_folder_is_named(tmp_path):
     (tmp_path / "plain").write_text("")
     with pytest.raises(FileError, match=r"plain/a\.stl: expected an existing folder"):

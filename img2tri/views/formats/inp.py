@@ -2,9 +2,9 @@
 
 Each region is an ELSET; each set of facets an NSET of its nodes and a SURFACE of its element sides, an interface that of the region that
 comes first in its name. The file holds the mesh and nothing else, to be included in an analysis by ``*INCLUDE, INPUT=mesh.inp``, or in a
-``*PART``. Names are made to fit, see `img2tri.views.formats.text.identifiers`; a comment tells where one had to be changed. Lines and
-numbers keep to the limits of Abaqus, 20 characters for a number. Plane elements lie at z = 0, whatever the height of the mesh, as CalculiX
-takes no others.
+``*PART``. Names are made to fit, see `img2tri.views.formats.text.identifiers`; comments tell where one had to be changed, and the label of
+each region. Lines and numbers keep to the limits of Abaqus, 20 characters for a number. Plane elements lie at z = 0, whatever the height of
+the mesh, as CalculiX takes no others.
 
 With ``deck=True`` it is an analysis that runs as it is, to be filled with the materials and loads of the user: every separate body is held
 at its lowest boundary vertices and drawn up at its highest.
@@ -12,6 +12,7 @@ at its lowest boundary vertices and drawn up at its highest.
 
 from __future__ import annotations
 
+import json
 from itertools import chain
 
 import numpy as np
@@ -60,6 +61,7 @@ def inp(made: Cells, *, deck: bool = False, plane: str = "stress") -> dict[str, 
     named = identifiers(chain(made.names.values(), made.sides), taken=("HELD", "DRAWN"))
     lines = ["*HEADING", "img2tri"] if deck else []
     lines += [f"** {MARK}", *notes(made.texts, "** ")]
+    lines += notes({"labels": json.dumps({named[name]: label for label, name in made.names.items()})}, "** ")
     lines += notes({plain: f"named {name}" for name, plain in named.items() if plain != name}, "** ")
     lines += ["*NODE", *_nodes(made.points if made.solid else made.points * (1, 1, 0) + 0.0)]
     for label, name in made.names.items():

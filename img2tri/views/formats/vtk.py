@@ -61,9 +61,9 @@ def grid_of(
     grid = pyvista.UnstructuredGrid({TYPES[kind]: cells}, points)
     grid.cell_data["region"] = regions.astype(np.int32)
     for label, name in names.items():
-        grid.field_data[_plain(name)] = np.array([label])
+        grid.field_data[plain(name)] = np.array([label])
     for name, nodes in facets.items():
-        grid.field_data[_plain(name)] = nodes
+        grid.field_data[plain(name)] = nodes
     return grid
 
 
@@ -115,7 +115,8 @@ def vtkhdf(made: Cells) -> dict[str, bytes]:
     return {"": _STAMP.sub(without, data)}
 
 
-def _plain(name: str) -> str:
+def plain(name: str) -> str:
+    """Make a name one that VTK can write as that of an array."""
     return re.sub(r"[^\w .,()+-]", "_", name)
 
 
