@@ -28,6 +28,7 @@ from img2tri.shapes.unrolling import Points, Unrolled, cross
 SCALES = (1.5, 5.0, 16.0)  # px, see `splines.smoothed`
 MISFIT = 0.4  # of the slack: by how much a smooth curve may miss the range of a crossing and still count as fitting
 WINDOW = 3.0  # scales: how far from a range that is missed a curve fits
+FREE = 5.0  # px, the least scale that moves the ends of chains along the frame: short chains there would lose their area
 BENDS = 2  # how often a curve is bent towards the ranges it misses
 BEND = 0.75  # of the scale: to how many places on either side a bend reaches
 
@@ -64,31 +65,37 @@ class Sliding:
         """(k,) the chain of each entry of `indices`."""
         return np.repeat(np.arange(len(self.rings)), np.diff(self.starts))
 
+    @property
+    def movable(self) -> Bools:
+        """(c,) the chains with points that may slide; those along the frame have none but at their ends."""
+        return np.asarray(self.axis[self.indices[self.starts[:-1] + 1]] != 0)
+
 
 def widest_fit(s: Sliding) -> Floats:
     """Shift each point (n,) along its link onto the smooth curve of the widest scale that fits."""
     shift, level = np.zeros((len(SCALES) + 1, len(s.points))), np.zeros(len(s.points), np.int64)
     size = np.diff(s.starts)
+    free = s.axis != 0
     for k, scale in enumerate(SCALES, start=1):
-        long = size > 6 * scale
+        long = (size > 6 * scale) & s.movable
         if not long.any():
             break
         line = Unrolled(s.indices, s.starts, s.rings, long, max(CONTINUED, math.ceil(3 * BEND * scale) + 1))
         at = line.source
-        off, direction, steps = smoothed(line, line.points(s.points), scale)
+        off, direction, steps = smoothed(line, line.points(s.points), scale, free)
         # Slide to the tangent of the curve.
         axis, low, high = line.sign * s.axis[at], s.low[at], s.high[at]
         across = cross(axis, direction)
         steep = np.abs(across) > 1e-9
-        t = np.divide(cross(off, direction), across, out=np.zeros(len(at)), where=steep)
+        t = np.divide(cross(off, direction), across, out=np.zeros(len(at)), where=steep)[line.original]
         # A range is missed by what lies across the curve: along links that run nearly as it does, it says little.
         missed = np.abs((t - np.clip(t, low, high)) * across) > MISFIT * s.slack[at] * np.abs(axis)
-        fits = beyond(line, steps, missed, WINDOW * scale)
+        fits = beyond(line, steps, missed & ~line.node, WINDOW * scale)
         for _ in range(BENDS):
-            miss = np.where(fits, (t - np.clip(t, low, high)) * across, 0)
+            miss = np.where(fits & ~line.node, (t - np.clip(t, low, high)) * across, 0)
             t -= np.divide(faded(line, miss, BEND * scale), across, out=np.zeros(len(at)), where=steep)
         own = at[line.own]
-        shift[k, own] = np.clip(t, low, high)[line.own]
+        shift[k, own] = np.where(line.node & (scale < FREE), 0, np.clip(t, low, high))[line.own]
         level[own[fits[line.own]]] = k
     return _blend(shift, level, s)
 
@@ -98,7 +105,7 @@ def _blend(shift: Floats, level: Ints, s: Sliding) -> Floats:
     if not level.any():
         return np.zeros(shift.shape[1])
     kernel = np.array([1.0, 8, 28, 56, 70, 56, 28, 8, 1]) / 256
-    line = Unrolled(s.indices, s.starts, s.rings, np.diff(s.starts) > 1, len(kernel) // 2)
+    line = Unrolled(s.indices, s.starts, s.rings, s.movable, len(kernel) // 2)
     at, result = line.source[line.own], np.zeros(shift.shape[1])
     for k in range(1, len(shift)):
         share = np.convolve((level[line.source] == k).astype(np.float64), kernel, "same")

@@ -53,8 +53,14 @@ def place(
     if corners:
         points[len(links.crack) + np.searchsorted(links.node, at)] = sharp
     sliding = _sliding(links, points, shift, slack)
+    free = _with_free_ends(sliding, links)
+    shift = widest_fit(free)
+    # From here on the nodes on the frame stay, too.
+    ends = sliding.axis != free.axis
+    points[ends] += (shift * free.axis)[ends]
+    sliding, shift = replace(sliding, points=np.where(ends, points, sliding.points)), np.where(ends, 0.0, shift)
     wanted = swept(sliding.points, sliding) if gray is not None else _pixels_swept(points, links)
-    shift = keep_areas(sliding, widest_fit(sliding), wanted)
+    shift = keep_areas(sliding, shift, wanted)
     return links.outlines(sliding.points + shift * links.axis), links
 
 
@@ -69,6 +75,17 @@ def _sliding(links: Links, points: Points, shift: Floats, slack: Floats) -> Slid
     """Points shifted to where they are known to lie, with the ranges that are left to them."""
     low, high = np.maximum(-slack, -REACH - shift), np.minimum(slack, REACH - shift)
     return Sliding(points + shift * links.axis, links.axis, low, high, slack, links.indices, links.starts, links.rings)
+
+
+def _with_free_ends(s: Sliding, links: Links) -> Sliding:
+    """Let the nodes on the frame of the image slide along it, as the crossing next to each does on its link."""
+    first, last = links.ends
+    beside = np.concatenate([s.indices[s.starts[:-1] + 1], s.indices[s.starts[1:] - 2]])
+    node = np.concatenate([first, last])
+    ends = np.concatenate([~s.rings, ~s.rings]) & (links.room[node] == 0) & (s.axis[beside] != 0)
+    axis = s.axis.copy()
+    axis[node[ends]] = s.axis[beside[ends]]
+    return replace(s, axis=axis)
 
 
 def _pixels_swept(points: Points, links: Links) -> Floats:

@@ -24,8 +24,8 @@ FIXED = 1e12  # how much more a node resists than all that pulls at it
 CONTINUED = 11  # places by which chains have to be continued: 3 for the third derivative, the rest for the Gaussian
 
 
-def smoothed(line: Unrolled, points: Points, scale: float) -> tuple[Points, Points, Floats]:
-    """Smooth chains along their arc; nodes stay.
+def smoothed(line: Unrolled, points: Points, scale: float, free: Bools) -> tuple[Points, Points, Floats]:
+    """Smooth chains along their arc; nodes stay, or say nothing if they are free.
 
     Parameters
     ----------
@@ -33,6 +33,8 @@ def smoothed(line: Unrolled, points: Points, scale: float) -> tuple[Points, Poin
         Chains laid out on a line, continued by `CONTINUED` places or more, and (k,) its points, from `Unrolled.points`.
     scale
         In px: waves of half that length vanish, half is left of those of three scales, and all of those longer than six.
+    free
+        (n,) bool, the points that are free if they are nodes: there the curve goes on as the rest of the chain has it.
 
     Returns
     -------
@@ -44,16 +46,20 @@ def smoothed(line: Unrolled, points: Points, scale: float) -> tuple[Points, Poin
         The way along the arc from each place to the next, in px; without meaning from one chain to another.
     """
     steps = np.maximum(np.abs(np.diff(convolve(points, _gaussian(STEPS)))), LEAST_STEP)
-    off = _relaxed(line, points, steps, (WIDTH * scale) ** 6)
+    loose = free[line.end]
+    off = _relaxed(line, points, steps, (WIDTH * scale) ** 6, loose)
     slope = np.gradient(points + off)
+    # At a free node the curve goes on as it is at its neighbour.
+    node = np.flatnonzero(line.node & loose)
+    slope[node] = slope[np.where(line.own[node + 1], node + 1, node - 1)]
     return off, slope / np.maximum(np.abs(slope), 1e-12), steps
 
 
-def _relaxed(line: Unrolled, points: Points, steps: Floats, stiffness: float) -> Points:
+def _relaxed(line: Unrolled, points: Points, steps: Floats, stiffness: float, free: Bools) -> Points:
     """Solve for what a curve of some stiffness is off its points: (S + stiffness D' D) off = -stiffness D' D points."""
     from scipy.linalg import solveh_banded
 
-    places, factors = _third_derivatives(line, steps)
+    places, factors = _third_derivatives(line, steps, free)
     unknown, size = _folded(line), int(line.own.sum())
     at, third = unknown[places], (factors * points[places]).sum(axis=0)
     factors = factors * line.sign[places]  # a place that repeats another one turned moves the other way
@@ -64,8 +70,8 @@ def _relaxed(line: Unrolled, points: Points, steps: Floats, stiffness: float) ->
     entry = np.abs(at[i] - at[j]) * size + np.minimum(at[i], at[j])
     band = np.bincount(entry.ravel(), (stiffness * both * factors[i] * factors[j]).ravel(), 7 * size).reshape(7, size)
     own = np.flatnonzero(line.own)
-    band[0, unknown[own]] += (steps[own - 1] + steps[own]) / 2
-    band[0, unknown[line.node]] *= FIXED
+    band[0, unknown[own]] += (steps[own - 1] + steps[own]) / 2 * np.where(line.node & free, 1 / FIXED, 1)[own]
+    band[0, unknown[line.node & ~free]] *= FIXED
 
     pull = -stiffness * third * factors
     right = [np.bincount(at.ravel(), part.ravel(), size) for part in (pull.real, pull.imag)]
@@ -74,13 +80,13 @@ def _relaxed(line: Unrolled, points: Points, steps: Floats, stiffness: float) ->
     return result
 
 
-def _third_derivatives(line: Unrolled, steps: Floats) -> tuple[Ints, Floats]:
+def _third_derivatives(line: Unrolled, steps: Floats, free: Bools) -> tuple[Ints, Floats]:
     """Four places in a row (4, m), and their factors in the third derivative there, times the root of the stretch it stands for.
 
-    Of a ring all rows count once, of an open chain those with their middle between its ends.
+    Of a ring all rows count once, of an open chain those with their middle between its ends, but none that goes beyond a free end.
     """
-    own, ring = line.own, line.ring
-    places = np.flatnonzero(np.where(ring[:-3], own[:-3], own[1:-2] & own[2:-1])) + np.arange(4)[:, None]
+    own, ring, real = line.own, line.ring, line.own | ~free
+    places = np.flatnonzero(np.where(ring[:-3], own[:-3], own[1:-2] & own[2:-1] & real[:-3] & real[3:])) + np.arange(4)[:, None]
     a, b, c = steps[places[:3]]
     # One over the product of the distances to the other three, the sign of which alternates.
     factors = np.stack([-1 / (a * (a + b) * (a + b + c)), 1 / (a * b * (b + c)), -1 / ((a + b) * b * c), 1 / ((a + b + c) * (b + c) * c)])

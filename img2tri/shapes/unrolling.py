@@ -35,6 +35,8 @@ class Unrolled:
         (k,) bool, the chain is a ring.
     node
         (k,) bool, the own places at the ends of open chains.
+    end
+        (k,) the point of the node an open chain is turned about, at its continuations; elsewhere the point itself.
     """
 
     def __init__(self, indices: Ints, starts: Ints, rings: Bools, chosen: Bools, reach: int) -> None:
@@ -52,6 +54,8 @@ class Unrolled:
         self.chain, self.ring = which, ring[which]
         self.own = (place >= 0) & (place < (length - 2 * reach)[which])
         self.node = ~self.ring & ((place == 0) | (place == steps[which]))
+        end = np.where(place < 0, indices[first[which]], indices[first[which] + steps[which]])
+        self.end = np.where(self.own | self.ring, self.source, end)
         # A turn about the last node Z and one about the first node A move a point by 2 (Z - A).
         self.sign = np.where(turned, -1.0, 1.0)
         self._first, self._last = indices[first[which]], indices[first[which] + steps[which]]

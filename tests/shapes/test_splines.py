@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from img2tri.shapes.splines import CONTINUED, WIDTH, beyond, faded, smoothed
+from img2tri.shapes import splines
+from img2tri.shapes.splines import CONTINUED, WIDTH, beyond, faded
 from img2tri.shapes.unrolling import Unrolled
 
 
@@ -14,6 +15,10 @@ def laid(z, *, ring, reach=CONTINUED):
     indices = np.append(np.arange(len(z)), 0) if ring else np.arange(len(z))
     line = Unrolled(indices, np.array([0, len(indices)]), np.array([ring]), np.array([True]), reach)
     return line, line.points(z)
+
+
+def smoothed(line, points, scale, free=()):
+    return splines.smoothed(line, points, scale, np.isin(np.arange(line.source.max() + 1), free))
 
 
 def circle(radius, count, seed=0):
@@ -84,6 +89,21 @@ def test_straight_lines_and_nodes_stay(scale):
     off = smoothed(line, points, scale)[0]
     assert np.abs(off[line.node]).max() < 1e-9
     assert np.abs(off[line.own]).max() > 0.1
+
+
+def test_free_nodes_follow_the_rest_of_their_chain():
+    z = (2 - 1j) * np.arange(40) + 3
+    moved = z.copy()
+    moved[[0, -1]] += 0.4j, -0.3j
+    line, points = laid(moved, ring=False)
+    for free, stays in (([], [0, -1]), ([0], [-1]), ([0, 39], [])):
+        off, direction, _ = smoothed(line, points, 4.0, free)
+        curve = (points + off)[line.own]
+        assert curve[stays] == pytest.approx(moved[stays], abs=1e-9)
+        if len(free) == 2:
+            # On the line again, though not evenly along it.
+            np.testing.assert_allclose(((curve - 3) / (2 - 1j)).imag, 0, atol=1e-6)
+            np.testing.assert_allclose(direction[line.own] * abs(2 - 1j) / (2 - 1j), 1, atol=1e-6)
 
 
 def test_waves_are_taken_away_by_their_length():
