@@ -12,11 +12,15 @@ from PIL import Image
 EXAMPLES = Path(__file__).parent.parent / "examples"
 
 
-def run(name, out):
+def load(name):
     spec = importlib.util.spec_from_file_location(name, EXAMPLES / f"{name}.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    return module.main(out)
+    return module
+
+
+def run(name, out):
+    return load(name).main(out)
 
 
 def test_one_call(tmp_path):
@@ -92,3 +96,22 @@ def test_pictures_of_the_readme(tmp_path):
         one, other = (np.asarray(picture.reduce(24), float) for picture in (drawn, shown))
         assert abs(one - other).mean() < 4
         assert abs(one - other).max() < 80
+
+
+@pytest.mark.parametrize("count", [2, pytest.param(8, marks=pytest.mark.slow)])
+def test_stress_at_a_hole(tmp_path, count):
+    pytest.importorskip("skfem")
+    example = load("07_stress_at_a_hole")
+    if count == 2:
+        example.ROUTES.pop("pixels")
+    found = example.main(tmp_path, count)
+    assert found["binary_60_4"] <= 1.5
+    assert found["gray_60_4"] <= 1
+    for kind in ("binary", "gray"):
+        # A rough outline gets worse with finer edges.
+        assert found[f"{kind}_60_2_raw"] <= found[f"{kind}_60_4_raw"] + 0.5
+        assert found[f"{kind}_20_2_raw"] <= 3
+    if "pixels_60_4" in found:
+        assert found["pixels_60_4"] > 20
+    assert found["paper"] < -60
+    assert (tmp_path / "stress_at_a_hole.png").stat().st_size > 10_000
