@@ -22,10 +22,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from img2tri.records import Bools, Floats, Ints
-from img2tri.shapes.splines import CONTINUED, beyond, faded, smoothed
+from img2tri.shapes.splines import CONTINUED, Elastic, beyond, faded
 from img2tri.shapes.unrolling import Points, Unrolled, cross
 
-SCALES = (1.5, 5.0, 16.0)  # px, see `splines.smoothed`
+SCALES = (1.5, 5.0, 16.0)  # px, see `splines.Elastic`
 MISFIT = 0.4  # of the slack: by how much a smooth curve may miss the range of a crossing and still count as fitting
 WINDOW = 3.0  # scales: how far from a range that is missed a curve fits
 FREE = 5.0  # px, the least scale that moves the ends of chains along the frame: short chains there would lose their area
@@ -74,15 +74,17 @@ class Sliding:
 def widest_fit(s: Sliding) -> Floats:
     """Shift each point (n,) along its link onto the smooth curve of the widest scale that fits."""
     shift, level = np.zeros((len(SCALES) + 1, len(s.points))), np.zeros(len(s.points), np.int64)
-    size = np.diff(s.starts)
-    free = s.axis != 0
+    long = [(np.diff(s.starts) > 6 * scale) & s.movable for scale in SCALES]
     for k, scale in enumerate(SCALES, start=1):
-        long = (size > 6 * scale) & s.movable
-        if not long.any():
+        if not long[k - 1].any():
             break
-        line = Unrolled(s.indices, s.starts, s.rings, long, max(CONTINUED, math.ceil(3 * BEND * scale) + 1))
+        if k == 1 or (long[k - 1] != long[k - 2]).any():
+            # The wider scales of the same chains are served, too.
+            widest = max(other for other, chains in zip(SCALES, long, strict=True) if (chains == long[k - 1]).all())
+            line = Unrolled(s.indices, s.starts, s.rings, long[k - 1], max(CONTINUED, math.ceil(3 * BEND * widest) + 1))
+            curves = Elastic(line, line.points(s.points), s.axis != 0)
         at = line.source
-        off, direction, steps = smoothed(line, line.points(s.points), scale, free)
+        off, direction = curves.smoothed(scale)
         # Slide to the tangent of the curve.
         axis, low, high = line.sign * s.axis[at], s.low[at], s.high[at]
         across = cross(axis, direction)
@@ -90,7 +92,7 @@ def widest_fit(s: Sliding) -> Floats:
         t = np.divide(cross(off, direction), across, out=np.zeros(len(at)), where=steep)[line.original]
         # A range is missed by what lies across the curve: along links that run nearly as it does, it says little.
         missed = np.abs((t - np.clip(t, low, high)) * across) > MISFIT * s.slack[at] * np.abs(axis)
-        fits = beyond(line, steps, missed & ~line.node, WINDOW * scale)
+        fits = beyond(line, curves.steps, missed & ~line.node, WINDOW * scale)
         for _ in range(BENDS):
             miss = np.where(fits & ~line.node, (t - np.clip(t, low, high)) * across, 0)
             t -= np.divide(faded(line, miss, BEND * scale), across, out=np.zeros(len(at)), where=steep)

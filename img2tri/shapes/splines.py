@@ -24,60 +24,75 @@ FIXED = 1e12  # how much more a node resists than all that pulls at it
 CONTINUED = 11  # places by which chains have to be continued: 3 for the third derivative, the rest for the Gaussian
 
 
-def smoothed(line: Unrolled, points: Points, scale: float, free: Bools) -> tuple[Points, Points, Floats]:
-    """Smooth chains along their arc; nodes stay, or say nothing if they are free.
+class Elastic:
+    """Chains as elastic curves, each point of which is held where it is; nodes stay, or are not held at all if they are free.
 
-    Parameters
+    Attributes
     ----------
-    line, points
-        Chains laid out on a line, continued by `CONTINUED` places or more, and (k,) its points, from `Unrolled.points`.
-    scale
-        In px: waves of half that length vanish, half is left of those of three scales, and all of those longer than six.
-    free
-        (n,) bool, the points that are free if they are nodes: there the curve goes on as the rest of the chain has it.
-
-    Returns
-    -------
-    off : (k,) complex
-        From each place on the line to the smooth curve.
-    direction : (k,) complex
-        The unit direction the curve goes on in.
-    steps : (k - 1,) float64
-        The way along the arc from each place to the next, in px; without meaning from one chain to another.
+    steps
+        (k - 1,) float64, the way along the arc from each place on the line to the next, in px; without meaning between chains.
     """
-    steps = np.maximum(np.abs(np.diff(convolve(points, _gaussian(STEPS)))), LEAST_STEP)
-    loose = free[line.end]
-    off = _relaxed(line, points, steps, (WIDTH * scale) ** 6, loose)
-    slope = np.gradient(points + off)
-    # At a free node the curve goes on as it is at its neighbour.
-    node = np.flatnonzero(line.node & loose)
-    slope[node] = slope[np.where(line.own[node + 1], node + 1, node - 1)]
-    return off, slope / np.maximum(np.abs(slope), 1e-12), steps
 
+    def __init__(self, line: Unrolled, points: Points, free: Bools) -> None:
+        """Prepare what does not depend on the scale.
 
-def _relaxed(line: Unrolled, points: Points, steps: Floats, stiffness: float, free: Bools) -> Points:
-    """Solve for what a curve of some stiffness is off its points: (S + stiffness D' D) off = -stiffness D' D points."""
-    from scipy.linalg import solveh_banded
+        Parameters
+        ----------
+        line, points
+            Chains laid out on a line, continued by `CONTINUED` places or more, and (k,) its points, from `Unrolled.points`.
+        free
+            (n,) bool, the points that are free if they are nodes: there the curve goes on as the rest of the chain has it.
+        """
+        self.steps = np.maximum(np.abs(np.diff(convolve(points, _gaussian(STEPS)))), LEAST_STEP)
+        self._line, self._points, loose = line, points, free[line.end]
+        self._loose = np.flatnonzero(line.node & loose)
+        places, factors = _third_derivatives(line, self.steps, loose)
+        self._unknown, size = _folded(line), int(line.own.sum())
+        at, third = self._unknown[places], (factors * points[places]).sum(axis=0)
+        factors = factors * line.sign[places]  # a place that repeats another one turned moves the other way
 
-    places, factors = _third_derivatives(line, steps, free)
-    unknown, size = _folded(line), int(line.own.sum())
-    at, third = unknown[places], (factors * points[places]).sum(axis=0)
-    factors = factors * line.sign[places]  # a place that repeats another one turned moves the other way
+        # Half of D' D by diagonals, entry (i, j) of it at [i - j, j]. Where two of four places stand for one unknown, both halves count.
+        i, j = np.tril_indices(4)
+        both = 1 + ((i != j)[:, None] & (at[i] == at[j]))
+        entry = np.abs(at[i] - at[j]) * size + np.minimum(at[i], at[j])
+        self._bending = np.bincount(entry.ravel(), (both * factors[i] * factors[j]).ravel(), 7 * size).reshape(7, size)
+        pull = -third * factors
+        self._pull = np.stack([np.bincount(at.ravel(), part.ravel(), size) for part in (pull.real, pull.imag)], axis=1)
 
-    # Half of D' D by diagonals, entry (i, j) of it at [i - j, j]. Where two of four places stand for one unknown, both halves count.
-    i, j = np.tril_indices(4)
-    both = 1 + ((i != j)[:, None] & (at[i] == at[j]))
-    entry = np.abs(at[i] - at[j]) * size + np.minimum(at[i], at[j])
-    band = np.bincount(entry.ravel(), (stiffness * both * factors[i] * factors[j]).ravel(), 7 * size).reshape(7, size)
-    own = np.flatnonzero(line.own)
-    band[0, unknown[own]] += (steps[own - 1] + steps[own]) / 2 * np.where(line.node & free, 1 / FIXED, 1)[own]
-    band[0, unknown[line.node & ~free]] *= FIXED
+        own = np.flatnonzero(line.own)
+        fixed, self._share = np.flatnonzero(line.node & ~loose), np.zeros(size)
+        self._share[self._unknown[own]] = (self.steps[own - 1] + self.steps[own]) / 2
+        self._share[self._unknown[self._loose]] /= FIXED
+        self._fixed = self._unknown[fixed]
 
-    pull = -stiffness * third * factors
-    right = [np.bincount(at.ravel(), part.ravel(), size) for part in (pull.real, pull.imag)]
-    found: Floats = solveh_banded(band, np.stack(right, axis=1), lower=True, overwrite_ab=True, overwrite_b=True, check_finite=False)
-    result: Points = line.sign * (found[:, 0] + 1j * found[:, 1])[unknown]
-    return result
+    def smoothed(self, scale: float) -> tuple[Points, Points]:
+        """Smooth the chains along their arc.
+
+        Parameters
+        ----------
+        scale
+            In px: waves of half that length vanish, half is left of those of three scales, and all of those longer than six.
+
+        Returns
+        -------
+        off : (k,) complex
+            From each place on the line to the smooth curve.
+        direction : (k,) complex
+            The unit direction the curve goes on in.
+        """
+        from scipy.linalg import solveh_banded
+
+        # The curve is S points = (S + stiffness D' D) curve; what is solved for is how far it is off the points.
+        stiffness = (WIDTH * scale) ** 6
+        band = stiffness * self._bending
+        band[0] += self._share
+        band[0, self._fixed] *= FIXED
+        found: Floats = solveh_banded(band, stiffness * self._pull, lower=True, overwrite_ab=True, overwrite_b=True, check_finite=False)
+        off: Points = self._line.sign * (found[:, 0] + 1j * found[:, 1])[self._unknown]
+        slope = np.gradient(self._points + off)
+        # At a free node the curve goes on as it is at its neighbour.
+        slope[self._loose] = slope[np.where(self._line.own[self._loose + 1], self._loose + 1, self._loose - 1)]
+        return off, slope / np.maximum(np.abs(slope), 1e-12)
 
 
 def _third_derivatives(line: Unrolled, steps: Floats, free: Bools) -> tuple[Ints, Floats]:

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from img2tri.shapes import splines
-from img2tri.shapes.splines import CONTINUED, WIDTH, beyond, faded
+from img2tri.shapes.splines import CONTINUED, WIDTH, Elastic, beyond, faded
 from img2tri.shapes.unrolling import Unrolled
 
 
@@ -18,7 +17,8 @@ def laid(z, *, ring, reach=CONTINUED):
 
 
 def smoothed(line, points, scale, free=()):
-    return splines.smoothed(line, points, scale, np.isin(np.arange(line.source.max() + 1), free))
+    curves = Elastic(line, points, np.isin(np.arange(line.source.max() + 1), free))
+    return *curves.smoothed(scale), curves.steps
 
 
 def circle(radius, count, seed=0):
