@@ -15,6 +15,13 @@ def test_it_is_the_sha256_of_type_shape_and_bytes():
     assert image_hash(IMAGE) == expected
 
 
+def test_of_a_mask_eight_pixels_are_a_byte():
+    mask = IMAGE > 100
+    expected = hashlib.sha256(b"|b1 (30, 40)" + np.packbits(mask).tobytes()).hexdigest()
+    assert image_hash(mask) == expected
+    assert image_hash(mask) != image_hash(mask.astype(np.uint8))
+
+
 def test_it_does_not_depend_on_how_the_numbers_lie_in_memory():
     assert len({image_hash(array) for array in (IMAGE, IMAGE.astype(">u2"), np.asfortranarray(IMAGE), np.repeat(IMAGE, 2, 1)[:, ::2])}) == 1
 
