@@ -29,6 +29,7 @@ SCALES = (1.5, 5.0, 16.0)  # px, see `splines.Elastic`
 MISFIT = 0.4  # of the slack: by how much a smooth curve may miss the range of a crossing and still count as fitting
 WINDOW = 3.0  # scales: how far from a range that is missed a curve fits
 FREE = 5.0  # px, the least scale that moves the ends of chains along the frame: short chains there would lose their area
+SAME = 1e-12  # px, a step that changes nothing
 BENDS = 2  # how often a curve is bent towards the ranges it misses
 BEND = 0.75  # of the scale: to how many places on either side a bend reaches
 
@@ -131,6 +132,8 @@ def keep_areas(s: Sliding, shift: Floats, wanted: Floats, *, rounds: int = 4) ->
         gain = np.bincount(chain, np.abs(width) * free, len(wanted))
         missing = wanted - swept(moved, s)
         step = np.divide(missing, gain, out=np.zeros_like(gain), where=gain > 0.1)
+        if np.abs(step).max(initial=0) < SAME:
+            break
         move = np.zeros_like(shift)
         move[at[free]] = (np.clip(step, -0.25, 0.25)[chain] * np.sign(width))[free]
         shift = np.clip(shift + move, s.low, s.high)

@@ -47,12 +47,13 @@ class Unrolled:
         which = np.repeat(np.arange(len(chains)), length)
         begin = (np.cumsum(length) - length)[which] + reach
         place = np.arange(len(which)) - begin
-        turns, rest = np.divmod(place, np.where(ring, 1, 2)[which] * steps[which])
+        self.own = (place >= 0) & (place < (length - 2 * reach)[which])
+        turns, rest, out = np.zeros_like(place), place.copy(), np.flatnonzero(~self.own)
+        turns[out], rest[out] = np.divmod(place[out], (np.where(ring, 1, 2) * steps)[which[out]])
         turned = rest > steps[which]
         along = np.where(turned, 2 * steps[which] - rest, rest)
         self.source, self.original = indices[first[which] + along], begin + along
         self.chain, self.ring = which, ring[which]
-        self.own = (place >= 0) & (place < (length - 2 * reach)[which])
         self.node = ~self.ring & ((place == 0) | (place == steps[which]))
         end = np.where(place < 0, indices[first[which]], indices[first[which] + steps[which]])
         self.end = np.where(self.own | self.ring, self.source, end)
