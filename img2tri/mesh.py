@@ -296,5 +296,5 @@ class TriangleMesh:
             f = self.frame
             about |= {"recipe": self.origin.recipe, **self.origin.settings, "names": about["names"]}
             about["frame"] = {"shape": f.shape, "spacing": f.spacing, "corner": f.corner, "upward": f.upward}
-        texts = {"img2tri": json.dumps(about, default=str)}
+        texts = {"img2tri": json.dumps(about, default=str)} | ({"units": about["units"]} if about.get("units") else {})
         return {"z": self.frame.z, "cell_data": measure(self.vertices, self.triangles, ["q"]), "field_data": texts}

@@ -18,15 +18,16 @@ from img2tri.raster.cropping import crop as cropped
 from img2tri.raster.hashing import image_hash
 from img2tri.raster.labelling import label, picked
 from img2tri.raster.reading import read
-from img2tri.raster.zones import Zones, cleaned, find_zones
-from img2tri.records import Floats, Origin, Outlines, checked_names
+from img2tri.raster.zones import cleaned, find_zones
+from img2tri.records import Origin, checked_names
 from img2tri.shapes.fields import EdgeLength
-from img2tri.shapes.links import Links, pixel_areas, pixels_beside
+from img2tri.shapes.links import pixel_areas, pixels_beside
 from img2tri.shapes.periodic import check_periodic
 from img2tri.shapes.polygons import enclosed_areas
 
 RECIPES = ("conforming", "structured", "unstructured")
 SMOOTHINGS = ("none", "uniform", "cotangent")
+UNITS = ("um", "mm", "cm", "m", "in", "ft")
 MOST_PASSES = 100_000
 PAPER_THRESHOLD, PAPER_STEP = 240, "10px"
 PAPER_SMOOTHING = {"structured": "none", "unstructured": "uniform"}
@@ -68,6 +69,7 @@ def mesh_image(
     iterations: int = 10,
     spacing: float | Sequence[float] | str | None = None,
     origin: str | Sequence[float] = "lower",
+    units: str | None = None,
     page: int = 0,
     crop: Sequence[float] | None = None,
     min_area: float | str | None = None,
@@ -83,8 +85,8 @@ def mesh_image(
     Parameters
     ----------
     image
-        A path; an array (h, w) or (h, w, 3 or 4) of bool, integers or floats; or a planar ``pyvista.ImageData``, on which
-        the mesh then lies.
+        A path or a file opened in binary mode; an array (h, w) or (h, w, 3 or 4) of bool, integers or floats; or a planar
+        ``pyvista.ImageData``, on which the mesh then lies.
     recipe
         "conforming": every region with its own outline, holes and all, to the promises below. "structured" and
         "unstructured" are the paper's, with what it gets wrong counted in the report.
@@ -94,9 +96,8 @@ def mesh_image(
     labels, background
         None: one white zone, region 1. True: each value of the image is a region of its own. A list: these values are. The
         background is the label that is not meshed; None: all are.
-    invert, connectivity
+    invert, connectivity, outline, corners
         Mesh the dark zone. Pixels hang together through their sides (4), or also through their corners (8).
-    outline, corners
         "smooth": through the places between the pixels where the edge is likely to be. "pixel": exactly along their sides.
         "auto": corners are kept sharp, as far as `min_angle` allows. "keep": always, even where that forces smaller
         angles, which the report then lists. "round": they are smoothed as all else is.
@@ -133,6 +134,8 @@ def mesh_image(
     origin
         "lower": (0, 0) is the lower-left corner of the image, y points up. "upper": y points down from the upper-left
         corner. (x, y): the place of the lower-left corner.
+    units
+        What a world unit is: "um", "mm", "cm", "m", "in" or "ft", for files that can tell. None: "mm" with `spacing` from a file.
     page, max_pixels
         Which image of a file; the most pixels a file may have.
     crop
@@ -142,10 +145,9 @@ def mesh_image(
         part of the neighbour they share most with. None removes nothing. What was removed is in the report.
     largest
         True: only the largest component of each region is kept.
-    names, seed
-        Names for regions, such as ``{1: "bone"}``; the seed of all that is random.
-    progress
-        Called with the name of a stage and the fraction done; what it raises ends the work.
+    names, seed, progress
+        Names for regions, such as ``{1: "bone"}``; the seed of all that is random; what is called with the name of a stage and the
+        fraction done, and ends the work if it raises.
     **paper
         Options of the paper's recipes: step, n_boundary_points, n_interior_points, min_distance, min_distance_to_boundary.
 
@@ -169,6 +171,7 @@ def mesh_image(
     """
     tell = progress or (lambda *_: None)
     choice("recipe", recipe, RECIPES)
+    choice("units", "mm" if units is None else units, UNITS)
     names = checked_names(names)
     labels = labels if labels is None or isinstance(labels, bool) else picked(labels)
     background = None if background is None else label("background", background)
@@ -252,6 +255,7 @@ def mesh_image(
         "smoothing": smoothing,
         "iterations": iterations,
         "spacing": frame.spacing,
+        "units": units or ("mm" if picture.notes.get("spacing") == "file" else None),
         "seed": seed,
         "names": names,
         "source": picture.source,
@@ -261,7 +265,8 @@ def mesh_image(
     mesh = TriangleMesh(
         frame.world(made.vertices), made.triangles, outlines.labels[made.regions], frame, names,
         Origin(
-            recipe, settings, outlines, *pixels_beside(links), areas=_expected_areas(zones, outlines, links),
+            recipe, settings, outlines, *pixels_beside(links),
+            areas=pixel_areas(links) if zones.gray is None else enclosed_areas(outlines),  # gray values may place the outlines
             counted={**made.counted, "removed": removed},
             tolerance=within if recipe == "conforming" else None, min_angle=min_angle if recipe == "conforming" else None,
         ),
@@ -293,8 +298,3 @@ def _advice(level: Level | None, removed: int) -> str:
     if level is None:
         return ", only background; see background="
     return f" above the threshold {level.value:g} ({level.how}); try another threshold=, or invert=True"
-
-
-def _expected_areas(zones: Zones, outlines: Outlines, links: Links) -> Floats:
-    """Area each region should have: that of its pixels, or, where gray values place the outlines, that within them."""
-    return pixel_areas(links) if zones.gray is None else enclosed_areas(outlines)

@@ -50,6 +50,7 @@ ARRIVE = {
     "iterations": (["--iterations", "3"], 3),
     "spacing": (["--spacing", "0.5,0.7"], (0.5, 0.7)),
     "origin": (["--origin=-5,2.5"], (-5.0, 2.5)),
+    "units": (["--units", "mm"], "mm"),
     "page": (["--page", "2"], 2),
     "crop": (["--crop", "1,2.5,30,40"], (1.0, 2.5, 30.0, 40.0)),
     "min_area": (["--min-area", "20px2"], "20px2"),

@@ -7,6 +7,7 @@ import inspect
 import os
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -164,7 +165,7 @@ CHANGES = {
 
 
 def test_every_option_is_shown_to_change_something():
-    elsewhere = {"page", "max_pixels", "names", "progress"}
+    elsewhere = {"page", "max_pixels", "names", "progress", "units"}
     signature = inspect.signature(mesh_image).parameters
     assert set(CHANGES) | elsewhere == set(signature) - {"image", "paper"} | set(PaperOptions.__annotations__)
 
@@ -423,6 +424,13 @@ def test_names_are_kept_with_the_mesh():
     assert mesh.names == names
     assert mesh.smoothed().names == names
     assert mesh_image(DISC).names == {}
+
+
+def test_a_name_of_no_region_is_refused():
+    with pytest.raises(ParameterError, match=r"^names: expected labels of the image, found 2; it has \[1\]"):
+        mesh_image(DISC, names={1: "bone", 2: "marrow"})
+    with pytest.raises(ParameterError, match="^names: expected labels of the image, found 0; it has "):
+        mesh_image(GRAINS, labels=True, names={0: "outside"})
 
 
 def test_names_are_those_of_the_moment_and_in_the_report():
@@ -709,3 +717,29 @@ def test_every_error_is_one_sentence_of_its_own():
     assert issubclass(FileError, OSError)
     assert issubclass(ParameterError, ValueError)
     assert set(SMOOTHINGS) == {"none", "uniform", "cotangent"}
+
+
+@pytest.mark.parametrize(("units", "word", "svg"), [("mm", "millimeter", "mm"), ("um", "micron", ""), ("in", "inch", "in"), (None, "millimeter", "")])
+def test_units_reach_objects_and_files(tmp_path, units, word, svg):
+    mesh = mesh_image(specimens.disc(30, 10), edge_length=5, units=units)
+    assert mesh.to_trimesh(height=2).units == units
+    texts = mesh.to_pyvista().field_data
+    assert (texts["units"][0] if units else "units" in texts) == (units or False)
+    mesh.save(tmp_path / "disc.3mf", height=2)
+    mesh.save(tmp_path / "disc.svg")
+    with zipfile.ZipFile(tmp_path / "disc.3mf") as package:
+        assert f'unit="{word}"' in package.read("3D/3dmodel.model").decode()
+    assert f'width="30{svg}"' in (tmp_path / "disc.svg").read_text()
+
+
+def test_files_that_know_their_pixels_are_in_millimetres(tmp_path):
+    path = tmp_path / "slice.tif"
+    Image.fromarray(specimens.disc(30, 10).astype(np.uint8) * 255).save(path, resolution=10, resolution_unit=3)  # pixels per cm
+    assert mesh_image(path, edge_length="5px", spacing="file").origin.settings["units"] == "mm"
+    assert mesh_image(path, edge_length="5px").origin.settings["units"] is None
+    assert mesh_image(path, edge_length="5px", spacing="file", units="cm").origin.settings["units"] == "cm"
+
+
+def test_units_that_are_none():
+    with pytest.raises(ParameterError, match="units: expected one of 'um', 'mm', 'cm', 'm', 'in', 'ft', found 'furlong'"):
+        mesh_image(specimens.disc(30, 10), units="furlong")

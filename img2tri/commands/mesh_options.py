@@ -12,7 +12,7 @@ MESH_OPTIONS = (
     "recipe", "threshold", "labels", "background", "invert", "connectivity", "outline", "corners", "edge_length", "gradation",
     "min_edge_length", "boundary_edge_length", "elements_across", "segments_per_turn", "min_angle", "tolerance", "keep_area", "smoothing",
     "periodic", "interior",
-    "iterations", "spacing", "origin", "page", "crop", "min_area", "largest", "max_pixels", "names", "seed",
+    "iterations", "spacing", "origin", "units", "page", "crop", "min_area", "largest", "max_pixels", "names", "seed",
     "step", "n_boundary_points", "n_interior_points", "min_distance", "min_distance_to_boundary",
 )  # fmt: skip
 
@@ -38,6 +38,7 @@ def add_mesh_options(parser: ArgumentParser) -> None:
         "in mm (default 1)")  # fmt: skip
     add("--origin", type=_pair, metavar="O", help="lower: (0, 0) is the lower-left corner, y up; upper: the upper-left one, y down; "
         "x,y: place of the lower-left corner (default lower)")  # fmt: skip
+    add("--units", metavar="U", help="what a world unit is: um, mm, cm, m, in or ft, for files that can tell")
 
     add = parser.add_argument_group("how it is meshed", argument_default=SUPPRESS).add_argument
     add("--recipe", metavar="R", help="conforming, or the paper's: structured, unstructured (default conforming)")
