@@ -719,7 +719,9 @@ def test_every_error_is_one_sentence_of_its_own():
     assert set(SMOOTHINGS) == {"none", "uniform", "cotangent"}
 
 
-@pytest.mark.parametrize(("units", "word", "svg"), [("mm", "millimeter", "mm"), ("um", "micron", ""), ("in", "inch", "in"), (None, "millimeter", "")])
+@pytest.mark.parametrize(
+    ("units", "word", "svg"), [("mm", "millimeter", "mm"), ("um", "micron", ""), ("in", "inch", "in"), (None, "millimeter", "")]
+)
 def test_units_reach_objects_and_files(tmp_path, units, word, svg):
     mesh = mesh_image(specimens.disc(30, 10), edge_length=5, units=units)
     assert mesh.to_trimesh(height=2).units == units

@@ -47,7 +47,7 @@ def check(labels, background=0, connectivity=4, **options):
     touching = {tuple(sorted(outlines.labels[pair].tolist())) for pair in parted[(parted > 0).all(axis=1)]}
     assert touching == oracles.pixel_neighbours(labels, background)
 
-    # Every crossing lies on its link, strictly inside; every node in its block; on the frame, nodes may slide along it, but not to a corner.
+    # Every crossing lies on its link, strictly inside; every node in its block; on the frame nodes slide along it, but not to a corner.
     z = outlines.points[:, 0] + 1j * outlines.points[:, 1]
     slide = (z - links.middle) / np.where(links.axis == 0, 1, links.axis)
     on_link = links.axis != 0
