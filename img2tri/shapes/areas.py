@@ -12,6 +12,7 @@ import numpy as np
 
 from img2tri.records import Bools, Floats, Ints
 from img2tri.shapes.drafts import Draft
+from img2tri.shapes.leaning import Sideways, cut_off, lenses
 from img2tri.shapes.links import pixel_areas
 from img2tri.shapes.unrolling import cross
 
@@ -24,44 +25,27 @@ def keep_areas(d: Draft, *, tolerance: float) -> Draft:
     """Move breaks sideways so that the chords enclose what the outlines enclose, chain by chain.
 
     A chord on a curve cuts a lens off. Each break takes up half of the lenses beside it; what then is missing of a chain, since
-    some breaks cannot move, is shared evenly by the others. No break ends farther from the outline than half the tolerance. Where
+    some breaks cannot move, is shared evenly by the others. No break ends farther from the outline than the tolerance. Where
     that leaves a small region with too much or too little, breaks are added, to be moved the next time.
     """
     first, last = d.pieces
-    place, z = d.places, (d.outlines.points[:, 0] + 1j * d.outlines.points[:, 1])[d.outlines.indices]
-    swept = np.concatenate([[0], np.cumsum(cross(z[:-1], z[1:]) / 2)])
-    lens = swept[last] - swept[first] - cross(place[first], place[last]) / 2
-    lens += (cross(place[first], z[first]) + cross(z[last], place[last])) / 2
-    k, ring = len(z), d.links.rings
-    begin, end = d.outlines.starts[:-1][ring], d.outlines.starts[1:][ring] - 1
-    length = np.abs(place[last] - place[first])
-    area = np.bincount(first, lens, k) + np.bincount(last, lens, k)
-    width = np.bincount(first, length, k) + np.bincount(last, length, k)
-    ahead, behind = np.zeros(k, np.complex128), np.zeros(k, np.complex128)
-    ahead[first], behind[last] = place[last], place[first]
-    # The two ends of a ring are one break.
-    area[begin], width[begin], behind[begin] = area[begin] + area[end], width[begin] + width[end], behind[end]
-    movable = d.breaks & ~d.reset[d.outlines.indices] & (d.links.axis[d.outlines.indices] != 0) & (width > 0)
-    movable[end] = False
+    chain, size = d.links.chain, len(d.links.rings)
+    free = Sideways(d)
+    on, (area, width) = chain[free.at], (part[free.at] for part in lenses(d))
+    lens = cut_off(d)
+    lost = np.bincount(chain[first], lens, size).astype(np.float64)
 
     # Moving a break sideways by s sweeps s * width / 2.
-    shift = np.divide(area, width, out=np.zeros(k), where=movable)
-    chain = d.links.chain
-    missing = np.bincount(chain[first], lens, len(ring)) - np.bincount(chain, shift * width / 2, len(ring))
-    share = np.bincount(chain, np.where(movable, width / 2, 0), len(ring))
-    shift += np.where(movable, np.divide(missing, share, out=np.zeros_like(share), where=share > 0)[chain], 0)
-    outwards = -1j * (ahead - behind)
-    outwards /= np.maximum(np.abs(outwards), 1e-12)
-    # Along the outline a break is free, but not to leave it.
-    off = (d.moved * outwards.conj()).real
-    step = np.where(movable, np.clip(off + shift, -tolerance / 2, tolerance / 2) - off, 0)
-    moves = step * outwards
-    moves[end] = moves[begin]
-
-    lacking = np.abs(np.bincount(chain[first], lens, len(ring)) - np.bincount(chain, step * width / 2, len(ring)))
+    step = area / width
+    share = np.bincount(on, width / 2, size).astype(np.float64)
+    missing = lost - np.bincount(on, step * width / 2, size)
+    step += np.divide(missing, share, out=np.zeros_like(share), where=share > 0)[on]
+    moved = free.moved(d, step, tolerance)
+    taken = ((moved - d.moved)[free.at] * free.right(d.places).conj()).real
+    lacking = np.abs(lost - np.bincount(on, taken * width / 2, size))
     breaks = d.breaks.copy()
     breaks[_middles(d, first, last, np.abs(lens), lacking > AREA * _smaller_side(d))] = True
-    return replace(d, breaks=breaks, moved=d.moved + moves, measured=np.full(k, -1), tested=np.full(k, -1))
+    return replace(d, breaks=breaks, moved=moved, measured=np.full(len(moved), -1), tested=np.full(len(moved), -1))
 
 
 def area_error(d: Draft) -> float:

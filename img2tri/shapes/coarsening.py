@@ -4,7 +4,8 @@ A chain of many crossings is replaced by few *pieces*: chords between *breaks*, 
 between them. Coarsening is optimistic, and checked:
 
 1. breaks are set evenly along each chain, then moved sideways so that the chords enclose the area of the outline;
-2. a piece whose run leaves its chord by more than the tolerance is split where it is farthest;
+2. a piece whose run leaves its chord by more than the tolerance leans towards it, see `leaning`; if that is not enough, it
+   is split where it is farthest;
 3. pieces that come too near to each other, or meet at too sharp an angle, are split too.
 
 Where a piece is down to two neighbouring crossings and still too near to another one, its points go back to the middles of
@@ -18,6 +19,7 @@ by one without one passing through another.
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -25,8 +27,11 @@ import numpy as np
 from img2tri.records import Ints
 from img2tri.shapes.clearance import crowded_pieces, sharp_pieces, to_segment
 from img2tri.shapes.drafts import Draft
+from img2tri.shapes.leaning import towards_runs
 from img2tri.shapes.unrolling import Points
 
+LEANS, ENOUGH = 4, 0.95  # how often pieces lean towards their runs before they are split, until within this of the tolerance
+LEAST_MOVE = 1e-4  # px
 SHORT = 0.3  # px, pieces shorter than this are not left
 
 
@@ -77,9 +82,9 @@ def _copied(d: Draft) -> Draft:
 
 
 def _split_bulging(d: Draft, tolerance: float) -> None:
-    """Measure new pieces, and split those that leave the tolerance, until there are none."""
+    """Measure new pieces; those that leave the tolerance lean towards their runs, or are split, until there are none."""
     z = d.dense[d.outlines.indices]
-    while True:
+    for attempt in itertools.count():
         first, last = d.pieces
         fresh = d.measured[first] != last
         first, last = first[fresh], last[fresh]
@@ -101,8 +106,26 @@ def _split_bulging(d: Draft, tolerance: float) -> None:
         d.bulge[first[some]] = np.maximum(d.bulge[first[some]], worst)
         highest = np.zeros(len(first))
         highest[some] = worst
+        excess = highest - ENOUGH * tolerance
+        if attempt < LEANS and (highest > tolerance).any():
+            farthest = np.flatnonzero((distance == highest[which]) & (excess[which] > 0))
+            far = which[farthest]
+            if _moved(d, towards_runs(d, first[far], last[far], at[farthest], excess[far], tolerance), first[excess > 0]):
+                continue
         split = at[(distance == highest[which]) & (highest[which] > tolerance)]
         d.breaks[split] = True
+
+
+def _moved(d: Draft, moved: Points, doubtful: Ints) -> bool:
+    """Move breaks; their pieces, and those that begin at doubtful entries, are to be tested again. False if nothing moves."""
+    far = np.abs(moved - d.moved) > LEAST_MOVE
+    if not far.any():
+        return False
+    d.moved[:] = moved
+    first, last = d.pieces
+    stale = np.concatenate([first[far[first] | far[last]], doubtful])
+    d.measured[stale] = d.tested[stale] = -1
+    return True
 
 
 def _return_to_points(d: Draft, tolerance: float) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -71,13 +71,10 @@ class Draft:
         return Outlines(np.stack([place.real, place.imag], axis=1), index, starts, o.left, o.right, o.labels)
 
 
-def draft(
-    outlines: Outlines, links: Links, *, spacing: float | Floats, keep_corners: bool = False, settled: Draft | None = None
-) -> Draft:
+def draft(outlines: Outlines, links: Links, *, spacing: float | Floats, keep_corners: bool = False) -> Draft:
     """Set breaks along each chain, `spacing` px apart: one length, or one at each entry (k,).
 
-    With `keep_corners` no corner of an outline is ever blunted. Pieces that are also in a `settled` draft of the same outlines
-    need no other measure and test.
+    With `keep_corners` no corner of an outline is ever blunted.
     """
     dense = outlines.points[:, 0] + 1j * outlines.points[:, 1]
     k, starts = len(outlines.indices), outlines.starts
@@ -107,12 +104,17 @@ def draft(
     breaks[starts[:-1]] = breaks[starts[1:] - 1] = True
     kept = links.corner if keep_corners else np.zeros(len(dense), bool)
     measured, bulge = np.full(k, -1), np.zeros(k)
-    new = Draft(outlines, links, dense, np.zeros(len(dense), bool), kept, breaks, moved, measured, np.full(k, -1), bulge)
-    if settled is not None:
-        first, last = new.pieces
-        same = settled.breaks & ~settled.reset[outlines.indices] & (np.abs(settled.moved - moved) < SAME)
-        same = (settled.tested[first] == last) & same[first] & same[last]
-        first, last = first[same], last[same]
-        new.measured[first] = new.tested[first] = last
-        new.bulge[first] = settled.bulge[first]
-    return new
+    return Draft(outlines, links, dense, np.zeros(len(dense), bool), kept, breaks, moved, measured, np.full(k, -1), bulge)
+
+
+def remembered(d: Draft, settled: Draft) -> Draft:
+    """Take over what a settled draft of the same outlines knows of the pieces that both have: these need no other measure and test."""
+    first, last = d.pieces
+    same = settled.breaks & ~settled.reset[d.outlines.indices] & (np.abs(settled.moved - d.moved) < SAME)
+    same = (settled.tested[first] == last) & same[first] & same[last]
+    first, last = first[same], last[same]
+    k = len(d.moved)
+    measured, bulge = np.full(k, -1), np.zeros(k)
+    measured[first] = last
+    bulge[first] = settled.bulge[first]
+    return replace(d, measured=measured, tested=measured.copy(), bulge=bulge)

@@ -59,8 +59,7 @@ def place(
     ends = sliding.axis != free.axis
     points[ends] += (shift * free.axis)[ends]
     sliding, shift = replace(sliding, points=np.where(ends, points, sliding.points)), np.where(ends, 0.0, shift)
-    wanted = swept(sliding.points, sliding) if gray is not None else _pixels_swept(points, links)
-    shift = keep_areas(sliding, shift, wanted)
+    shift = keep_areas(sliding, shift, _wanted(sliding, links, slack))
     return links.outlines(sliding.points + shift * links.axis), links
 
 
@@ -88,15 +87,16 @@ def _with_free_ends(s: Sliding, links: Links) -> Sliding:
     return replace(s, axis=axis)
 
 
-def _pixels_swept(points: Points, links: Links) -> Floats:
-    """Area each chain has to sweep for the regions to keep the areas of their pixels.
+def _wanted(s: Sliding, links: Links, slack: Floats) -> Floats:
+    """Area each chain has to sweep: through the places that are known, and along the sides of pixels where none are.
 
-    The area between a chain and its cracks is closed by the steps from the corners of pixels to the nodes; where chains
-    meet these steps cancel.
+    So regions of a mask keep the areas of their pixels.
     """
-    closing = cross(points, links.middle) / 2
-    first, last = links.ends
-    return np.asarray(links.swept + closing[first] - closing[last])
+    one, other = links.indices[:-1], links.indices[1:]
+    corner = np.concatenate([links.head, links.middle[len(links.crack) :]])  # that of the pixels after each point
+    detour = cross(corner[one] - s.points[one], s.points[other] - s.points[one]) / 2
+    unknown = (slack[one] == REACH) & (slack[other] == REACH) & (np.diff(links.chain) == 0)
+    return np.asarray(swept(s.points, s) + np.bincount(links.chain[:-1], detour * unknown, len(links.rings)))
 
 
 def _settle_nodes(links: Links, passes: int = 4) -> Points:

@@ -239,11 +239,6 @@ def test_only_soft_edges_are_taken_at_their_word():
         assert (slack[links.axis != 0] == (KNOWN if known else REACH)).all()
 
 
-@pytest.mark.xfail(
-    strict=True,
-    raises=AssertionError,
-    reason="where gray values say no more than a mask the area is that of the polygon through the middles",
-)
 @pytest.mark.parametrize("radius", [1.2, 3.3, 8])
 def test_a_hard_edge_encloses_its_pixels_whatever_else_is_in_the_image(radius):
     mask = specimens.disc(24, radius, (12.2, 11.9))
