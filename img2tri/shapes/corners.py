@@ -25,6 +25,7 @@ ALIGNED = 2.9  # px, the least length of one that is
 EXACT = 1e-6  # px, greatest distance of crossings from a line along rows or columns
 SLOPPY = 0.09  # of the link: how far a line may miss the range of a crossing
 BEYOND = 1.65  # of the room in its block: how far out a corner may lie, it is then put back into the block
+APART = 1.5  # px
 SAME = 4  # crossings within which only one corner is kept
 
 
@@ -68,8 +69,9 @@ def find_corners(s: Sliding, heads: Points, room: complex) -> tuple[Ints, Points
             better = near & (new > score)
             score[better], off[better] = new[better], away[better]
     sharp = np.flatnonzero(score)
-    best = sharp[_best_nearby(at[sharp], score[sharp])]
-    best = best[~_again(s, line.source[at[best]])]
+    places = heads[line.source[at]] + off
+    best = sharp[_best_nearby(at[sharp], places[sharp], score[sharp])]
+    best = best[~_again(s, line.source[at[best]], places[best])]
     off = np.clip(off.real, -room.real, room.real) + 1j * np.clip(off.imag, -room.imag, room.imag)
     return line.source[at[best]], (heads[line.source[at]] + off)[best]
 
@@ -134,23 +136,23 @@ def _longest_line(s: Sliding, line: Unrolled, z: Points, usable: NDArray[np.bool
     return best
 
 
-def _again(s: Sliding, crossings: Ints) -> Bools:
+def _again(s: Sliding, crossings: Ints, places: Points) -> Bools:
     """Tell which corners, at the end of a ring, are those at its beginning once more."""
     entry = np.zeros(len(s.points), np.int64)
     entry[s.indices[::-1]] = np.arange(len(s.indices))[::-1]
     at = entry[crossings]
     chain = np.searchsorted(s.starts, at, side="right") - 1
-    first = np.full(len(s.rings), len(s.indices))
-    np.minimum.at(first, chain, at)
-    round_trip = first[chain] + np.diff(s.starts)[chain] - 1 - at
-    return np.asarray(s.rings[chain] & (round_trip <= SAME) & (first[chain] != at))
+    order = np.lexsort((at, chain))
+    first = order[np.searchsorted(chain[order], chain)]
+    round_trip = at[first] + np.diff(s.starts)[chain] - 1 - at
+    return np.asarray(s.rings[chain] & (round_trip <= SAME) & (first != np.arange(len(at))) & (np.abs(places - places[first]) <= APART))
 
 
-def _best_nearby(at: Ints, score: Floats) -> Bools:
-    """Tell which places have the best score among those within `SAME` crossings; `at` ascends."""
+def _best_nearby(at: Ints, corner: Points, score: Floats) -> Bools:
+    """Tell which places have the best score among those within `SAME` crossings and with their corners `APART` or nearer; `at` ascends."""
     best = np.ones(len(at), bool)
     for k in range(1, SAME + 1):
-        near = at[k:] - at[:-k] <= SAME
+        near = (at[k:] - at[:-k] <= SAME) & (np.abs(corner[k:] - corner[:-k]) <= APART)
         first_wins = score[:-k] >= score[k:]
         best[k:] &= ~(near & first_wins)
         best[:-k] &= ~(near & ~first_wins)
