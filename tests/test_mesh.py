@@ -8,11 +8,13 @@ import json
 import numpy as np
 import oracles
 import pytest
+import shapely
 import specimens
 
-from img2tri import FileError, MeshError, ParameterError, TriangleMesh, mesh_image
+from img2tri import FileError, MeshError, ParameterError, TriangleMesh, __version__, mesh_image
 from img2tri.records import Frame
 from img2tri.views.files import load
+from img2tri.views.formats.reading import read_msh
 
 HOLED = specimens.disc(50, 22) - specimens.disc(50, 9, (20.5, 26.0))
 GRAINS = specimens.polycrystal(40, 5)
@@ -124,7 +126,6 @@ def test_quality_agrees_with_other_means(grains):
 
 
 def test_outlines_are_polygons_in_world_units(holed, grains):
-    import shapely
 
     polygon = holed.outlines()[1]
     assert len(shapely.get_parts(polygon)) == 1
@@ -261,7 +262,118 @@ def test_a_height_that_is_none_is_refused(height, holed, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize("name", ["holed", "grains"])
+def test_split_gives_a_closed_body_for_each_region(name, request):
+    mesh = request.getfixturevalue(name)
+    scene = mesh.to_trimesh(height=3, split=True)
+    assert len(scene.geometry) == len(set(mesh.regions.tolist()))
+    for part in scene.geometry.values():
+        mine = mesh.triangles[mesh.regions == part.metadata["region"]]
+        assert part.is_watertight
+        assert part.volume == pytest.approx(3 * oracles.areas(mesh.vertices, mine).sum(), rel=1e-9)
+    assert set(scene.geometry) == ({"bone"} if name == "holed" else {f"region_{k}" for k in range(1, 6)})
+
+
+def test_second_order_is_that_of_the_image(holed):
+    made = holed.second_order()
+    n, edges = len(holed.vertices), {tuple(sorted(e)) for t in holed.triangles.tolist() for e in zip(t, t[1:] + t[:1], strict=True)}
+    assert (len(made.nodes), made.triangles.shape) == (n + len(edges), (len(holed.triangles), 6))
+    bent = np.linalg.norm(made.nodes[n:] - [holed.vertices[list(e)].mean(axis=0) for e in sorted(edges)], axis=1)
+    assert 0.01 < bent.max() < 0.5  # sides follow the discs, within a pixel of half a unit
+    alone = TriangleMesh(holed.vertices, holed.triangles, holed.regions).second_order()
+    assert np.array_equal(alone.nodes[:n], holed.vertices)  # without an image all sides are straight
+    assert np.allclose(alone.nodes[n:], [holed.vertices[list(e)].mean(axis=0) for e in sorted(edges)])
+
+
+def test_to_pyvista_makes_elements(holed):
+    flat, solid = holed.to_pyvista(order=2), holed.to_pyvista(2.5, solid=True, layers=3)
+    assert set(flat.celltypes.tolist()) == {22}  # VTK_QUADRATIC_TRIANGLE
+    assert set(solid.celltypes.tolist()) == {13}  # VTK_WEDGE
+    assert solid.n_cells == 3 * flat.n_cells == 3 * len(holed.triangles)
+    assert solid.volume == pytest.approx(2.5 * area(holed), rel=1e-9)
+    assert np.array_equal(solid.cell_data["region"], np.tile(holed.regions, 3))
+    assert set(holed.to_pyvista(1, solid=True, order=2).celltypes.tolist()) == {26}  # VTK_QUADRATIC_WEDGE
+    assert holed.to_pyvista(1, layers=2).n_cells == 2 * len(holed.triangles)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"height": 1, "order": 2}, "order: expected 1 for the surface of a solid, found 2; solid=True gives quadratic wedges"),
+        ({"solid": True}, "height: expected a length with solid=True, found None"),
+    ],
+)
+def test_to_pyvista_refuses(options, words, holed):
+    with pytest.raises(ParameterError) as refused:
+        holed.to_pyvista(**options)
+    assert words in str(refused.value)
+
+
+def test_a_notebook_shows_counts_and_a_drawing(holed):
+    text = holed._repr_html_()
+    assert text.count("<svg") == 1
+    n, m = len(holed.vertices), len(holed.triangles)
+    worst = oracles.angles(holed.vertices, holed.triangles).min()
+    assert f"{m} triangles · {n} vertices · 1 region · smallest angle {worst:.1f}°" in text
+
+
 # ---- files ----
+
+
+@pytest.mark.parametrize("height", [None, 1.5])
+@pytest.mark.parametrize("order", [1, 2])
+def test_a_file_for_solvers_holds_the_elements_asked_for(order, height, grains, tmp_path):
+    grains.save(tmp_path / "a.msh", height, order=order, layers=None if height is None else 2)
+    found = read_msh((tmp_path / "a.msh").read_bytes())
+    kind = {1: ("triangle", "wedge"), 2: ("triangle6", "wedge15")}[order][height is not None]
+    layers = 1 if height is None else 2
+    assert found.kind == kind
+    assert len(found.cells) == layers * len(grains.triangles)
+    assert np.array_equal(found.regions, np.tile(grains.regions, layers))
+    p = found.points[found.cells]
+    (ux, uy), (vx, vy) = (p[:, 1, :2] - p[:, 0, :2]).T, (p[:, 2, :2] - p[:, 0, :2]).T
+    high = 1 if height is None else p[:, 3, 2] - p[:, 0, 2]
+    assert ((ux * vy - uy * vx) / 2 * high).sum() == pytest.approx(area(grains) * (height or 1), rel=1e-9)
+    if order == 2:
+        curved = grains.second_order().nodes
+        assert {tuple(xy) for xy in found.points[:, :2].round(9).tolist()} == {tuple(xy) for xy in curved.round(9).tolist()}
+
+
+@pytest.mark.parametrize("suffix", [".svg", ".dxf", ".geojson"])
+def test_a_drawing_holds_the_outlines(suffix, holed, tmp_path):
+    path = tmp_path / f"holed{suffix}"
+    holed.save(path)
+    assert "bone" in path.read_text()
+    with pytest.raises(ParameterError, match=f"height: expected None for {suffix}, which is a drawing, found 4"):
+        holed.save(tmp_path / f"high{suffix}", height=4)
+    assert list(tmp_path.iterdir()) == [path]
+    if suffix == ".geojson":
+        (feature,) = json.loads(path.read_text())["features"]
+        assert shapely.geometry.shape(feature["geometry"]).equals(holed.outlines()[1])
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "words"),
+    [
+        ("a.stl", {"layers": 2}, "layers: expected to be left out for .stl, found 2; it is for .msh, .inp"),
+        ("a.ply", {"order": 2}, "order: expected to be left out for .ply, found 2; it is for .msh, .inp"),
+        ("a.obj", {"deck": False}, "deck: expected to be left out for .obj, found False"),
+        ("a.msh", {"order": 3}, "order: expected 1 or 2, found 3"),
+        ("a.bdf", {"height": 1, "order": 0}, "order: expected 1 or 2, found 0"),
+    ],
+)
+def test_options_of_other_formats_are_refused(name, options, words, holed, tmp_path):
+    with pytest.raises(ParameterError) as refused:
+        holed.save(tmp_path / name, **options)
+    assert words in str(refused.value)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_mesh_without_an_image_claims_none(tmp_path):
+    TriangleMesh(SQUARE, HALVES, [1, 2], names={1: "bone"}).save(tmp_path / "a.ply")
+    header = (tmp_path / "a.ply").read_bytes().split(b"end_header")[0].decode()
+    told = next(line for line in header.splitlines() if line.startswith("comment img2tri: "))
+    assert json.loads(told.removeprefix("comment img2tri: ")) == {"version": __version__, "names": {"1": "bone"}}
 
 
 @pytest.mark.parametrize("suffix", [s for s in SUFFIXES if s != ".3mf"])

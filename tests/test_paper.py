@@ -235,3 +235,31 @@ def test_a_polygon_that_is_cut_by_the_frame():
     mesh = unstructured_mesh(np.ones((60, 80), bool), edge_length=5)
     assert shapely.box(0, 0, 79, 59).covers(shapely.multipoints(mesh.points))
     assert (oracles.areas(*_parts(mesh)).sum()) == pytest.approx(79 * 59, rel=0.01)
+
+
+def test_a_contour_that_encloses_nothing_is_counted():
+    mask = np.zeros((60, 60), bool)
+    mask[5:30, 5:30] = True
+    for k in range(9):
+        mask[40 + k, 40 + k] = mask[40 + k, 56 - k] = True  # two diagonals, traced out and back
+    assert contour_polygon(external_contours(mask)[0]).is_empty
+    mesh = unstructured_mesh(mask, edge_length=5)
+    assert (mesh.counted["contours"], mesh.counted["contours_without_triangles"]) == (2, 1)
+    assert mesh.points.max() <= 30
+
+
+def test_a_contour_whose_points_lie_on_one_line_is_counted():
+    mask = np.zeros((60, 120), bool)
+    mask[5:30, 5:30] = True
+    mask[50, 10:110] = mask[51, 60] = True  # a line with a bump too small for a point
+    mesh = unstructured_mesh(mask, n_boundary_points=3, n_interior_points=0)
+    assert (mesh.counted["contours"], mesh.counted["contours_without_triangles"]) == (2, 1)
+    assert mesh.points[:, 1].max() <= 30
+
+
+def test_a_zone_narrower_than_the_grid_is_refused():
+    mask = np.zeros((40, 40), bool)
+    mask[0:2, 0:31] = mask[0:31, 0:2] = True  # an angle, with three points of the grid whose triangle lies beside it
+    with pytest.raises(ImageError, match="mask: expected a white zone wider than step, found no triangle at step 30; make it smaller"):
+        structured_mesh(mask, step=30)
+    assert len(structured_mesh(mask, step=1).triangles) > 50

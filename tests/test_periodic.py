@@ -61,6 +61,26 @@ def test_maps_that_repeat(seed, periodic):
     check(wrapped(np.random.default_rng(seed).integers(0, 3, (9, 12))), periodic, background=None, edge_length=edge_length)
 
 
+@pytest.mark.parametrize("periodic", ["x", "y", "xy"])
+def test_straight_sides_are_divided_evenly(periodic):
+    labels = np.ones((61, 53), int)
+    labels[22:] = 2
+    labels = labels if periodic != "y" else labels.T
+    mesh = mesh_image(labels, labels=True, background=None, periodic=periodic if periodic != "xy" else "x", edge_length=5)
+    whole = mesh_image(np.ones((61, 53), int), labels=True, background=None, periodic=periodic, edge_length=5)
+    axis = 1 if periodic == "y" else 0
+    for wall in (0, 53):
+        v = mesh.vertices
+        places = np.sort(v[v[:, axis] == wall, 1 - axis])
+        junction = 22 if periodic == "y" else 61 - 22
+        assert abs(places - junction).min() < 1e-9
+        for part in (places[places < junction + 1e-9], places[places > junction - 1e-9]):
+            assert np.diff(part) == pytest.approx(np.ptp(part) / (len(part) - 1))
+    for axis, wall in ((0, 0), (0, 53), (1, 0), (1, 61)):
+        places = np.sort(whole.vertices[whole.vertices[:, axis] == wall, 1 - axis])
+        assert np.diff(places) == pytest.approx(np.ptp(places) / (len(places) - 1))
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(300))
 def test_many_maps_that_repeat(seed):
@@ -155,7 +175,8 @@ def test_an_error_says_where_sides_differ():
         mesh_image(labels, labels=True, periodic="x")
     labels = grains(1, (20, 30), 5)
     labels[0, [4, 9]] = 77
-    with pytest.raises(ImageError, match=r"first and the last row, found 77 and \d+ in column 4 \(2 such\)"):
+    words = r"first and the last row, found 77 and \d+ in column 4 \(2 such\).*np\.pad\(image, \(\(0, 1\), \(0, 0\)\)"
+    with pytest.raises(ImageError, match=words):
         mesh_image(labels, labels=True, periodic="xy")
 
 

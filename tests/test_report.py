@@ -10,7 +10,7 @@ import oracles
 import pytest
 import specimens
 
-from img2tri import mesh_image
+from img2tri import MeshError, mesh_image
 from img2tri.report import Report
 
 # Two white shapes, one with a hole, apart from each other and from the frame.
@@ -147,6 +147,28 @@ def test_json_holds_all_of_it(grains):
     assert told["topology"]["1"]["found"] == [1, 1]
     assert told["settings"]["labels"] is True
     assert json.dumps(told) == grains.report.to_json(indent=None)
+
+
+def test_a_mesh_without_a_boundary_cannot_be_judged(shapes):
+    folded = damaged(
+        shapes,
+        vertices=np.array([[10.0, 10.0], [30.0, 10.0], [20.0, 30.0], [20.0, 17.0]]),
+        triangles=np.array([[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]]),
+        regions=np.ones(4, int),
+    )
+    with pytest.raises(MeshError, match="report: expected a mesh with a boundary, found one folded upon itself"):
+        _ = folded.report
+
+
+def test_json_holds_settings_of_any_type():
+    y, x = np.mgrid[:20, :20]
+    image = np.hypot(x - 9.5, y - 9.5) < 8
+
+    settings = {"edge_length": np.float32(3), "tolerance": np.longdouble(0.5), "gradation": np.float16(0.25), "seed": np.int64(7)}
+    told = json.loads(mesh_image(image, **settings).report.to_json())["settings"]
+    assert {name: told[name] for name in settings} == {"edge_length": 3, "tolerance": 0.5, "gradation": 0.25, "seed": 7}
+    told = json.loads(mesh_image(image, edge_length=lambda places: np.full(len(places), 3.0)).report.to_json())["settings"]
+    assert told["edge_length"] == "field"
 
 
 def test_settings_are_plain_numbers_in_json():

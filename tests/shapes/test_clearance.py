@@ -11,7 +11,7 @@ import shapely
 import specimens
 
 from img2tri.records import Frame
-from img2tri.shapes.clearance import GAP, crowded_pieces, sharp_pieces, to_segment
+from img2tri.shapes.clearance import GAP, _around, crowded_pieces, sharp_pieces, to_segment
 from img2tri.shapes.cracks import find_cracks
 from img2tri.shapes.drafts import draft
 from img2tri.shapes.placing import place
@@ -111,3 +111,15 @@ def test_where_nothing_is_fresh_nothing_is_sharp():
     first, last = d.pieces
     assert sharp_pieces(d, first, last, np.ones(len(first), bool)).any()
     assert not sharp_pieces(d, first, last, np.zeros(len(first), bool)).any()
+
+
+@pytest.mark.parametrize("reach", [0.3, 1.0, 4.0, 30.0])
+def test_no_place_within_reach_is_left_out_and_none_far_away_is_looked_at(reach):
+    rng = np.random.default_rng(0)
+    places = rng.uniform(-10, 10, 2000) + 1j * rng.uniform(-5, 15, 2000)
+    for count in (1, 20):
+        chosen = np.isin(np.arange(2000), rng.choice(2000, count, replace=False))
+        away = np.abs(places[:, None] - places[chosen]).min(axis=1)
+        found = _around(places, reach, chosen)
+        assert found[away <= reach].all()
+        assert not found[away > 2 * np.sqrt(2) * reach].any()

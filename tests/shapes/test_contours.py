@@ -127,3 +127,9 @@ def test_polygons_of_noise_are_valid_and_hold_what_the_papers_polygon_holds(seed
 def test_a_wrong_contour(contour):
     with pytest.raises(ParameterError, match="contour: expected at least three finite points"):
         contour_polygon(contour)
+
+
+def test_the_smallest_contour_has_three_corners():
+    (contour,) = external_contours([[0, 0, 0, 0], [0, 1, 1, 0], [0, 1, 0, 0]])
+    assert sorted(contour.tolist()) == [[1, 1], [1, 2], [2, 1]]
+    assert contour_polygon(contour).area == 0.5

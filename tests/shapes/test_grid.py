@@ -70,3 +70,9 @@ def test_a_wrong_mask():
 def test_wrong_points():
     with pytest.raises(ParameterError, match="points: expected shape \\(n, 2\\)"):
         mask_filter([[0, 0, 0]], np.ones((2, 2)))
+
+
+def test_a_grid_of_too_many_points_is_refused_before_it_is_made():
+    with pytest.raises(ParameterError, match="step: expected a grid of at most .* points, found 0.001 for 10000 x 10000 pixels"):
+        structured_grid((10_000, 10_000), step=1e-3)
+    assert len(structured_grid((10_000, 10_000), step=1e3)) == 100

@@ -14,6 +14,7 @@ from scipy.spatial.distance import cdist, pdist
 from scipy.stats import kstest
 
 from img2tri.errors import ParameterError
+from img2tri.shapes import poisson
 from img2tri.shapes.contours import contour_polygon, external_contours
 from img2tri.shapes.poisson import poisson_disk
 from img2tri.shapes.spreading import spread_evenly
@@ -201,3 +202,11 @@ def test_wrong_points():
 def test_a_region_that_crosses_itself():
     with pytest.raises(ParameterError, match=r"region: expected a valid polygon, found .*Self-intersection"):
         poisson_disk([[0, 0], [4, 4], [4, 0], [0, 4]], [], min_distance=1, min_distance_to_boundary=1)
+
+
+def test_it_ends_where_there_is_room_in_cells_split_as_often_as_they_are(monkeypatch):
+    full = poisson_disk(SQUARE, coasts(SQUARE, 1.0), min_distance=1.0, min_distance_to_boundary=0.5)
+    monkeypatch.setattr(poisson, "DEPTH", 0)
+    some = poisson_disk(SQUARE, coasts(SQUARE, 1.0), min_distance=1.0, min_distance_to_boundary=0.5)
+    check_distances(some, SQUARE, coasts(SQUARE, 1.0), 1.0, 0.5)
+    assert 0.3 * len(full) < len(some) < 0.9 * len(full)

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles import angles, areas, check_valid
 
-from img2tri.errors import ParameterError
+from img2tri.errors import MeshError, ParameterError
 from img2tri.triangles.delaunay import triangulate
 from img2tri.triangles.fairing import _limits, fair_curves
 from img2tri.triangles.smoothing import cotangent
@@ -291,3 +291,10 @@ def test_options_that_cannot_be(options, message):
     v, t = rough_disc(10)
     with pytest.raises(ParameterError, match=message):
         cotangent(v, t, boundary="free", **options)
+
+
+@pytest.mark.parametrize("scale", [1e-200, 1e150])
+def test_lengths_whose_squares_are_no_numbers(scale):
+    v, t = rough_disc(20)
+    with pytest.raises(MeshError, match="vertices: expected edges of a length between 1e-100 and 1e100 on the boundary, found "):
+        fair_curves(v * scale, t, tolerance=0.5 * scale)

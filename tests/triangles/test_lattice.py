@@ -120,3 +120,18 @@ def test_an_empty_lattice_has_no_depth():
     assert len(depth) == 0
     assert len(depth.front()) == 0
     assert not depth.nodes().any()
+
+
+def test_a_large_depth_is_written_block_by_block():
+    lattice, labels, _ = labelled(0.1)
+    assert lattice.count > 2 * 2**15
+    depth = lattice.depth(lattice.eroded(labels))
+    numbers = np.arange(lattice.count)
+    triangles, regions = np.zeros((len(depth), 3), np.int64), np.zeros(len(depth), np.int64)
+    depth.write(numbers, triangles, regions)
+    z = everywhere(lattice)[triangles]
+    assert abs(z - np.roll(z, 1, axis=1)) == pytest.approx(0.1)
+    assert ((z[:, 1] - z[:, 0]).conj() * (z[:, 2] - z[:, 0])).imag.min() > 0
+    assert len(np.unique(np.sort(triangles, axis=1), axis=0)) == len(triangles)
+    assert (regions == 3).all()
+    assert set(np.unique(triangles)) == set(np.flatnonzero(depth.nodes()))

@@ -203,6 +203,22 @@ def test_table_names_what_is_wrong():
     assert max(map(len, text.splitlines())) <= 80
 
 
+def test_table_tells_figures_and_units():
+    quality = assess([[0, 0], [4, 0], [0, 3]], [[0, 1, 2]], list(METRICS))
+    head, columns, *rows = str(quality).splitlines()
+    assert head == "1 triangles"
+    assert columns.split() == ["min", "1", "%", "mean", "99", "%", "max"]
+    for name, row in zip(METRICS, rows, strict=True):
+        figure = f"{quality.arrays[name][0]:.4g}"
+        assert row.split() == [name, *5 * [figure], *(["degrees"] if name.endswith("_angle") else [])]
+
+
+def test_ratios_beyond_all_numbers_are_capped():
+    value = assess([[0, 0], [1, 0], [0.5, 1e-310]], [[0, 1, 2]], list(METRICS)).arrays
+    assert all(value[key][0] == LARGEST for key in ("radius_ratio", "aspect_ratio", "aspect_frobenius", "condition"))
+    assert 0 <= value["q"][0] < 1e-300
+
+
 def test_arguments_are_not_changed():
     v, t = any_triangles(6, 20)
     before = v.copy(), t.copy()
