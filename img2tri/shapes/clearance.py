@@ -44,7 +44,7 @@ def crowded_pieces(d: Draft, first: Ints, last: Ints, fresh: Bools) -> Bools:
     """Tell which pieces come too near to another one that is not their neighbour, at least one of the two being fresh."""
     at, place, bulge = d.outlines.indices, d.places, d.bulge[first]
     a, b = place[first], place[last]
-    i, j = _within(a, b, GAP + bulge + bulge[fresh].max(), fresh)
+    i, j = _within(a, b, GAP / 2 + bulge, fresh)
     head, tail = at[first], at[last]
     apart = (head[i] != head[j]) & (head[i] != tail[j]) & (tail[i] != head[j]) & (tail[i] != tail[j])
     i, j = i[apart], j[apart]
@@ -60,20 +60,37 @@ def crowded_pieces(d: Draft, first: Ints, last: Ints, fresh: Bools) -> Bools:
 
 
 def _within(a: Points, b: Points, reach: Floats, fresh: Bools) -> tuple[Ints, Ints]:
-    """Pairs of a fresh segment and another whose boxes, one of them widened by `reach`, meet; each pair once."""
-    import shapely
+    """Pairs of segments whose boxes, each widened by its `reach`, meet, at least one of them fresh; each pair once.
 
-    low = np.minimum(a.real, b.real) + 1j * np.minimum(a.imag, b.imag)
-    high = np.maximum(a.real, b.real) + 1j * np.maximum(a.imag, b.imag)
-    others = np.flatnonzero(_around((low + high) / 2, np.abs(high - low).max() + reach.max(), fresh))
-    chosen = np.flatnonzero(fresh)
-    boxes = shapely.linestrings(np.stack([low[chosen], high[chosen]], axis=1).view(np.float64).reshape(-1, 2, 2))
-    margin = reach[others] * (1 + 1j)
-    wide = np.stack([low[others] - margin, high[others] + margin], axis=1).view(np.float64).reshape(-1, 2, 2)
-    j, i = shapely.STRtree(boxes).query(shapely.linestrings(wide))
-    i, j = chosen[i], others[j]
-    once = (i < j) | ((i > j) & ~fresh[j])
-    return i[once], j[once]
+    Squares around the middles of segments are looked up in trees, one for each class of sizes, so that a few long segments do not
+    make all others look far.
+    """
+    from scipy.spatial import cKDTree
+
+    middle, half = (a + b) / 2, np.maximum(np.abs((b - a).real), np.abs((b - a).imag)) / 2 + reach
+    near = np.flatnonzero(_around(middle, 2 * half.max(), fresh))
+    places, size = np.stack([middle.real, middle.imag], axis=1)[near], np.frexp(half[near])[1]
+    trees = {}
+    for exponent in np.unique(size):
+        own = np.flatnonzero(size == exponent)
+        trees[exponent] = near[own], cKDTree(places[own], balanced_tree=False, compact_nodes=False)
+    found = []
+    for one, (segments, tree) in trees.items():
+        for other, (others, beside) in trees.items():
+            if one == other:
+                i, j = tree.query_pairs(2.0 ** (one + 1), p=np.inf, output_type="ndarray").T
+            elif one < other:
+                pairs = tree.sparse_distance_matrix(beside, 2.0**one + 2.0**other, p=np.inf, output_type="ndarray")
+                i, j = pairs["i"], pairs["j"]
+            else:
+                continue
+            found.append(np.stack([segments[i], others[j]]))
+    i, j = np.concatenate(found, axis=1)
+    # Boxes are narrower than squares.
+    away, room = middle[i] - middle[j], reach[i] + reach[j]
+    wide, high = (np.abs(part[i]) + np.abs(part[j]) for part in ((b - a).real / 2, (b - a).imag / 2))
+    meet = (fresh[i] | fresh[j]) & (np.abs(away.real) <= wide + room) & (np.abs(away.imag) <= high + room)
+    return i[meet], j[meet]
 
 
 def _around(middles: Points, reach: float, chosen: Bools) -> Bools:
