@@ -20,6 +20,7 @@ from PIL import Image, UnidentifiedImageError
 
 from img2tri.errors import FileError, ImageError, Img2triError
 from img2tri.raster.checking import Pixels
+from img2tri.raster.icons import check_icon
 from img2tri.raster.pages import Decoded, check_page, turned
 from img2tri.raster.sources import Source
 from img2tri.raster.tags import exif, orientation, pixel_size, upright
@@ -140,6 +141,7 @@ def _opened(source: Source, max_pixels: float = math.inf) -> Iterator[Image.Imag
 
 
 def _decode(source: Source, start: bytes, page: int, max_pixels: int) -> Decoded:
+    check_icon(source, max_pixels)
     with _opened(source, max_pixels) as img:
         kind = str(img.format)
         if kind in DRAWINGS:

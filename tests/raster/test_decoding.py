@@ -6,6 +6,7 @@ import contextlib
 import io
 import struct
 import sys
+import tracemalloc
 import zlib
 
 import cv2
@@ -426,6 +427,29 @@ def test_errors_of_paths(tmp_path):
         read("null\0byte.png")
     with pytest.raises(OSError, match="there is no file"):
         read("nowhere.png")
+
+
+@pytest.mark.parametrize("bitmap", [False, True])
+def test_a_bomb_in_an_icon_is_refused_before_it_is_decoded(tmp_path, bitmap):
+    inside = png([b"\0"], 50_000, 50_000, 8, 0)
+    if bitmap:
+        inside = struct.pack("<IiiHHIIiiII", 40, 50_000, -100_000, 1, 32, 0, 0, 0, 0, 0, 0)
+    small = png([b"\0\1\2"] * 2, 2, 2, 8, 0)
+    entries = [struct.pack("<BBBBHHII", 2, 2, 0, 0, 1, 8, len(data), place) for data, place in ((small, 38), (inside, 38 + len(small)))]
+    (tmp_path / "bomb.ico").write_bytes(struct.pack("<HHH", 0, 1, 2) + b"".join(entries) + small + inside)
+    tracemalloc.start()
+    with pytest.raises(ImageError, match=r"expected at most max_pixels=268435456 pixels, found 50000 x (50000|100000) in"):
+        read(tmp_path / "bomb.ico")
+    assert tracemalloc.get_traced_memory()[1] < 2**20
+    tracemalloc.stop()
+
+
+def test_icons_are_read(tmp_path):
+    Image.fromarray(np.arange(256, dtype=np.uint8).reshape(16, 16)).save(tmp_path / "small.ico", sizes=[(16, 16)])
+    assert read(tmp_path / "small.ico").values.shape[:2] == (16, 16)
+    (tmp_path / "cut.ico").write_bytes((tmp_path / "small.ico").read_bytes()[:20])
+    with pytest.raises(FileError):
+        read(tmp_path / "cut.ico")
 
 
 def test_a_bomb_is_refused_before_it_is_decoded(tmp_path):
