@@ -115,7 +115,7 @@ def mesh_image(
     segments_per_turn
         At least so many edges to a full turn of an outline, so that small holes stay round. None: as the tolerance needs.
     min_angle
-        Degrees, 0 to 33. The least angle of a triangle; above 30 more triangles are needed.
+        Degrees, 0 to 32. The least angle of a triangle; above 30 more triangles are needed.
     tolerance
         The greatest distance between the outlines and the edges of the mesh, like `edge_length`. Larger lets sharp detail go.
     keep_area
@@ -181,7 +181,7 @@ def mesh_image(
     smoothing = None if smoothing is None else choice("smoothing", smoothing, SMOOTHINGS)
     invert, keep_area, largest = flag("invert", invert), flag("keep_area", keep_area), flag("largest", largest)
     iterations, seed = integer("iterations", iterations, most=MOST_PASSES), integer("seed", seed, most=2**64 - 1)
-    min_angle = finite("min_angle", min_angle, least=0, most=33)
+    min_angle = finite("min_angle", min_angle, least=0, most=32)
     _check_paper_options(recipe, paper)
     if not isinstance(connectivity, int) or connectivity not in (4, 8):
         raise ParameterError(f"connectivity: expected 4 or 8, found {shown(connectivity)}")

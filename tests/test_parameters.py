@@ -123,7 +123,7 @@ def test_places_beyond_the_numbers_are_refused(origin):
 
 
 @pytest.mark.parametrize("options", [
-    {"gradation": 0.001}, {"gradation": 10}, {"min_angle": 33}, {"spacing": 1e-12}, {"spacing": 1e12}, {"spacing": 1e-90},
+    {"gradation": 0.001}, {"gradation": 10}, {"min_angle": 32}, {"spacing": 1e-12}, {"spacing": 1e12}, {"spacing": 1e-90},
     {"spacing": 1e90}, {"tolerance": 1e6}, {"edge_length": 1e6}, {"edge_length": 0.3}, {"origin": (1e9, -1e9)},
     {"elements_across": 50}, {"segments_per_turn": 1e4}, {"boundary_edge_length": 1e-200},
 ])  # fmt: skip
