@@ -198,10 +198,10 @@ def test_a_sharp_tip_is_blunted_or_kept_and_told():
         corners = outlines.points[links.corner]
         assert all(np.hypot(*(sharp.vertices - corner).T).min() < 1e-9 for corner in corners)
         least = oracles.angles(sharp.vertices, sharp.triangles).min(axis=1)
-        report, narrow = sharp.report, least < 33 - 1e-6
+        report, narrow = sharp.report, least < 32 - 1e-6
         assert report.smallest_angle == pytest.approx(least.min(), abs=1e-6)
         assert report.narrow == narrow.sum()
-        assert any("below 33 degrees" in line for line in report.warnings) == narrow.any()
+        assert any("below 32 degrees" in line for line in report.warnings) == narrow.any()
         assert len(report.warnings) == int(narrow.any())
         middles = sharp.vertices[sharp.triangles[narrow]].mean(axis=1)
         assert all(np.hypot(*(corners - middle).T).min() < 6 for middle in middles)

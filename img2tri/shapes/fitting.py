@@ -116,7 +116,7 @@ def _blend(shift: Floats, level: Ints, s: Sliding) -> Floats:
     return np.clip(result, s.low, s.high)
 
 
-def keep_areas(s: Sliding, shift: Floats, wanted: Floats, *, rounds: int = 4) -> Floats:
+def keep_areas(s: Sliding, shift: Floats, wanted: Floats, *, rounds: int = 8) -> Floats:
     """Shift each chain sideways until it sweeps the `wanted` area (c,), seen from the origin; return the new shifts."""
     at, chain = s.indices, s.chain
     ring_start, ring_end = s.starts[:-1][s.rings], s.starts[1:][s.rings] - 1
@@ -127,10 +127,11 @@ def keep_areas(s: Sliding, shift: Floats, wanted: Floats, *, rounds: int = 4) ->
         behind[ring_start], ahead[ring_end] = z[ring_end - 1], z[ring_start + 1]
         # A step dt along the link sweeps the area dt * axis x (ahead - behind) / 2.
         width = cross(s.axis[at], ahead - behind) / 2
-        free = (s.low[at] < shift[at]) & (shift[at] < s.high[at])
+        missing = wanted - swept(moved, s)
+        # One at the end of its range may still go back.
+        free = np.where(missing[chain] * width > 0, shift[at] < s.high[at], s.low[at] < shift[at])
         free[ring_end] = False
         gain = np.bincount(chain, np.abs(width) * free, len(wanted))
-        missing = wanted - swept(moved, s)
         step = np.divide(missing, gain, out=np.zeros_like(gain), where=gain > 0.1)
         if np.abs(step).max(initial=0) < SAME:
             break
