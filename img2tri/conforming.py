@@ -21,8 +21,9 @@ from img2tri.records import Floats, Frame, Made, Outlines
 from img2tri.shapes.areas import area_error, keep_areas
 from img2tri.shapes.coarsening import refine
 from img2tri.shapes.cracks import find_cracks
-from img2tri.shapes.drafts import Draft, draft
+from img2tri.shapes.drafts import Draft, draft, remembered
 from img2tri.shapes.fields import EdgeLength, Field, length_field
+from img2tri.shapes.leaning import fitted
 from img2tri.shapes.links import Links, pixel_areas
 from img2tri.shapes.periodic import FILLINGS, Twins, find_twins
 from img2tri.shapes.placing import place, place_on_sides
@@ -160,7 +161,7 @@ def conform(
     tell = progress or (lambda *_: None)
     tell("spacing", 0.3)
     twins = find_twins(outlines, links, periodic)
-    coarse = _spaced(outlines, links, twins, sizes, tolerance, corners == "keep")
+    coarse = _spaced(outlines, links, twins, sizes, tolerance, corners == "keep", keep_area)
     for _ in range(AREA_ROUNDS if keep_area else 0):
         if area_error(coarse) <= AREA_ERROR:
             break
@@ -202,7 +203,7 @@ def conform(
     return Made(vertices, triangles, regions, counted)
 
 
-def _spaced(outlines: Outlines, links: Links, twins: Twins, sizes: Sizes, tolerance: float, keep_corners: bool) -> Draft:
+def _spaced(outlines: Outlines, links: Links, twins: Twins, sizes: Sizes, tolerance: float, keep_corners: bool, keep_area: bool) -> Draft:
     """Coarsen the outlines to the lengths wanted, spaced evenly.
 
     A first coarsening shows where pieces have to be shorter than wanted; a second, and if need be a third, spaces them evenly
@@ -210,14 +211,19 @@ def _spaced(outlines: Outlines, links: Links, twins: Twins, sizes: Sizes, tolera
     """
     z = (outlines.points[:, 0] + 1j * outlines.points[:, 1])[outlines.indices]
     wanted = twins.shared(limit_growth(_wanted(z, links, sizes), z, links, sizes.gradation))
-    coarse = twins.settle(draft(outlines, links, spacing=wanted, keep_corners=keep_corners), tolerance=tolerance)
+
+    def spaced(known: Draft | None) -> Draft:
+        new = draft(outlines, links, spacing=wanted, keep_corners=keep_corners)
+        new = fitted(new, tolerance=tolerance, keep_area=keep_area)
+        return twins.settle(new if known is None or len(twins.one) else remembered(new, known), tolerance=tolerance)
+
+    coarse = spaced(None)
     for _ in range(RESPACINGS):
         shorter = twins.shared(limit_growth(by_pieces(coarse, wanted), z, links, sizes.gradation))
         if (shorter > 0.99 * wanted).all():
             break
         wanted = shorter
-        again = draft(outlines, links, spacing=wanted, keep_corners=keep_corners, settled=None if len(twins.one) else coarse)
-        coarse = twins.settle(again, tolerance=tolerance)
+        coarse = spaced(coarse)
     return coarse
 
 

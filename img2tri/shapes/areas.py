@@ -40,8 +40,8 @@ def keep_areas(d: Draft, *, tolerance: float) -> Draft:
     share = np.bincount(on, width / 2, size).astype(np.float64)
     missing = lost - np.bincount(on, step * width / 2, size)
     step += np.divide(missing, share, out=np.zeros_like(share), where=share > 0)[on]
-    moved = free.moved(d, step, tolerance)
-    taken = ((moved - d.moved)[free.at] * free.right(d.places).conj()).real
+    moved = free.moved(d.moved, step, tolerance)
+    taken = ((moved - d.moved)[free.at] * free.right(d.moved).conj()).real
     lacking = np.abs(lost - np.bincount(on, taken * width / 2, size))
     breaks = d.breaks.copy()
     breaks[_middles(d, first, last, np.abs(lens), lacking > AREA * _smaller_side(d))] = True

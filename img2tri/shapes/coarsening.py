@@ -30,16 +30,17 @@ from img2tri.shapes.drafts import Draft
 from img2tri.shapes.leaning import towards_runs
 from img2tri.shapes.unrolling import Points
 
-LEANS, ENOUGH = 4, 0.95  # how often pieces lean towards their runs before they are split, until within this of the tolerance
+LEANS, ENOUGH = 4, 0.95  # how often pieces lean towards their runs at first, to come within this share of the tolerance
 LEAST_MOVE = 1e-4  # px
 SHORT = 0.3  # px, pieces shorter than this are not left
 
 
 def settle(d: Draft, *, tolerance: float) -> Draft:
     """Split pieces until each is within `tolerance` px of its run, clear of the others, and not too sharp."""
-    d = _copied(d)
+    d, leans = _copied(d), LEANS
     while True:
-        _split_bulging(d, tolerance)
+        _split_bulging(d, tolerance, leans)
+        leans -= 1  # so that it ends: a break that leans away from its point may have to return there
         if _return_to_points(d, tolerance):
             continue
         first, last = d.pieces
@@ -81,8 +82,8 @@ def _copied(d: Draft) -> Draft:
     return replace(d, **{name: getattr(d, name).copy() for name in names})
 
 
-def _split_bulging(d: Draft, tolerance: float) -> None:
-    """Measure new pieces; those that leave the tolerance lean towards their runs, or are split, until there are none."""
+def _split_bulging(d: Draft, tolerance: float, leans: int) -> None:
+    """Measure new pieces; those that leave the tolerance lean towards their runs so often, then are split, until there are none."""
     z = d.dense[d.outlines.indices]
     for attempt in itertools.count():
         first, last = d.pieces
@@ -107,7 +108,7 @@ def _split_bulging(d: Draft, tolerance: float) -> None:
         highest = np.zeros(len(first))
         highest[some] = worst
         excess = highest - ENOUGH * tolerance
-        if attempt < LEANS and (highest > tolerance).any():
+        if attempt < leans and (highest > tolerance).any():
             farthest = np.flatnonzero((distance == highest[which]) & (excess[which] > 0))
             far = which[farthest]
             if _moved(d, towards_runs(d, first[far], last[far], at[farthest], excess[far], tolerance), first[excess > 0]):
@@ -135,7 +136,7 @@ def _return_to_points(d: Draft, tolerance: float) -> bool:
     distance = np.full(len(z), np.inf)
     for end in (first, last):
         distance[end] = np.minimum(distance[end], to_segment(z[end], place[first], place[last]))
-    back = (np.abs(d.moved) > tolerance) & (distance > tolerance) & np.isfinite(distance)
+    back = (np.abs(d.moved) > tolerance) & (distance > tolerance) & np.isfinite(distance) & ~d.reset[d.outlines.indices]
     d.moved[back] = 0
     stale = first[back[first] | back[last]]
     d.measured[stale] = d.tested[stale] = -1

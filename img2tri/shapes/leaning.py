@@ -25,17 +25,20 @@ FAIR = 0.5  # of `FARTHEST`: how far a break may go for that
 
 def fitted(d: Draft, *, tolerance: float, keep_area: bool = True) -> Draft:
     """Move breaks sideways: zigzags are smoothed; to keep areas, each break takes up half of the lenses beside it."""
-    free = Sideways(d)
+    free, moved = Sideways(d), d.moved
     for _ in range(FAIRINGS):
-        d = replace(d, moved=free.moved(d, free.zigzag(d), FAIR * tolerance))
+        moved = free.moved(moved, free.zigzag(moved), FAIR * tolerance)
+    d = replace(d, moved=moved)
     if keep_area:
         area, width = lenses(d)
-        d = replace(d, moved=free.moved(d, area[free.at] / width[free.at], tolerance))
+        d = replace(d, moved=free.moved(moved, area[free.at] / width[free.at], tolerance))
     return d
 
 
 class Sideways:
     """The breaks that may move sideways: those on a link, between two others. Both ends of a ring are one break, known by the first.
+
+    How far all entries (k,) lie from their dense points, as in `Draft.moved`, is given to each method and returned anew.
 
     Attributes
     ----------
@@ -59,35 +62,36 @@ class Sideways:
         self._inner = fair[self.at]
         self._second_behind, self._second_ahead = behind[self.behind], ahead[self.ahead]
         # The dense points they lie at, and those before and after these.
-        z = d.dense[d.outlines.indices]
-        before, after = np.roll(z, 1), np.roll(z, -1)
-        before[self._begin], after[self._end] = z[self._end - 1], z[self._begin + 1]
-        self._points = z[self.at], before[self.at], after[self.at]
+        self._dense = d.dense[d.outlines.indices]
+        before, after = np.roll(self._dense, 1), np.roll(self._dense, -1)
+        before[self._begin], after[self._end] = self._dense[self._end - 1], self._dense[self._begin + 1]
+        self._points = self._dense[self.at], before[self.at], after[self.at]
 
-    def zigzag(self, d: Draft) -> Floats:
+    def zigzag(self, moved: Points) -> Floats:
         """Return how far (b,) to move to smooth a zigzag from break to break: against the fourth difference, which arcs have none of."""
-        z = d.places
-        fourth = 6 * z[self.at] - 4 * (z[self.behind] + z[self.ahead]) + z[self._second_behind] + z[self._second_ahead]
-        return np.where(self._inner, -(fourth * self.right(z).conj()).real / 16, 0)
+        around = (self.at, self.behind, self.ahead, self._second_behind, self._second_ahead)
+        here, behind, ahead, before_that, after_that = (self._dense[i] + moved[i] for i in around)
+        fourth = 6 * here - 4 * (behind + ahead) + before_that + after_that
+        return np.where(self._inner, -(fourth * self.right(moved).conj()).real / 16, 0)
 
-    def right(self, places: Points) -> Points:
-        """Return the unit directions (b,) to the right of the chain, given the places (k,) of all entries."""
-        right = -1j * (places[self.ahead] - places[self.behind])
+    def right(self, moved: Points) -> Points:
+        """Return the unit directions (b,) to the right of the chain."""
+        right = -1j * (self._dense[self.ahead] + moved[self.ahead] - self._dense[self.behind] - moved[self.behind])
         return np.asarray(right / np.maximum(np.abs(right), 1e-12))
 
-    def moved(self, d: Draft, step: Floats, tolerance: float) -> Points:
-        """Return how far (k,) from their dense points entries lie after steps (b,) to the right, as far as there is room for these."""
-        places = d.places
-        right, moved = self.right(places), d.moved.copy()
+    def moved(self, moved: Points, step: Floats, tolerance: float) -> Points:
+        """Return how far (k,) entries lie from their dense points after steps (b,) to the right, as far as there is room for these."""
+        right, here = self.right(moved), moved[self.at]
         point, before, after = self._points
         # From where on the dense outline has a break been moved sideways? From a place on the way to the next point.
-        along = (moved[self.at] * right.conj()).imag
+        along = (here * right.conj()).imag
         way = np.where(along > 0, after, before) - point
-        on_outline = point + way * np.clip(np.abs(along) / np.maximum(np.abs(way), 1e-12), 0, 1)
-        off, most = ((places[self.at] - on_outline) * right.conj()).real, FARTHEST * tolerance
-        moved[self.at] += (np.clip(off + step, -most, most) - off) * right
-        moved[self._end] = moved[self._begin]
-        return moved
+        on_outline = way * np.clip(np.abs(along) / np.maximum(np.abs(way), 1e-12), 0, 1)
+        off, most = ((here - on_outline) * right.conj()).real, FARTHEST * tolerance
+        result = moved.copy()
+        result[self.at] += (np.clip(off + step, -most, most) - off) * right
+        result[self._end] = result[self._begin]
+        return result
 
 
 def towards_runs(d: Draft, first: Ints, last: Ints, farthest: Ints, excess: Floats, tolerance: float) -> Points:
@@ -105,7 +109,7 @@ def towards_runs(d: Draft, first: Ints, last: Ints, farthest: Ints, excess: Floa
     asked = _closed(d, np.bincount(ends, np.concatenate([by * (1 - share), by * share]), size))
     asking = _closed(d, np.bincount(ends, minlength=size))
     free = Sideways(d)
-    return free.moved(d, (asked / np.maximum(asking, 1))[free.at], tolerance)
+    return free.moved(d.moved, (asked / np.maximum(asking, 1))[free.at], tolerance)
 
 
 def lenses(d: Draft) -> tuple[Floats, Floats]:

@@ -13,7 +13,7 @@ import specimens
 from img2tri.records import Frame
 from img2tri.shapes.coarsening import settle
 from img2tri.shapes.cracks import find_cracks
-from img2tri.shapes.drafts import RING, draft
+from img2tri.shapes.drafts import RING, draft, remembered
 from img2tri.shapes.placing import place
 
 DISC = specimens.disc(100, 40.3, (50.1, 49.8))
@@ -122,7 +122,7 @@ def test_corners_can_be_kept():
 def test_what_is_settled_is_not_tested_again():
     d = drafted(specimens.polycrystal(), spacing=6.0)
     settled = settle(d, tolerance=0.5)
-    again = draft(d.outlines, d.links, spacing=6.0, settled=settled)
+    again = remembered(draft(d.outlines, d.links, spacing=6.0), settled)
     first, last = again.pieces
     known = again.tested[first] == last
     assert known.any()
@@ -131,7 +131,7 @@ def test_what_is_settled_is_not_tested_again():
     quick = settle(again, tolerance=0.5)
     for name in ("breaks", "moved", "reset"):
         assert np.array_equal(getattr(quick, name), getattr(plain, name))
-    other = draft(d.outlines, d.links, spacing=2.0, settled=settled)
+    other = remembered(draft(d.outlines, d.links, spacing=2.0), settled)
     assert (other.tested[other.pieces[0]] == other.pieces[1]).sum() < len(other.pieces[0])
 
 
