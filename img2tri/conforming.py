@@ -93,7 +93,7 @@ class Sizes:
     elements_across: float | None = None
     segments_per_turn: float | None = None
     shortest: float = 0.0
-    gradation: float = 0.3
+    gradation: float = 0.2
 
 
 def wanted_sizes(

@@ -37,7 +37,7 @@ def fill(
     *,
     edge_length: float,
     min_angle: float = 30.0,
-    gradation: float = 0.3,
+    gradation: float = 0.2,
     size: Floats | Callable[[Floats], Floats] | None = None,
     seed: int = 0,
 ) -> tuple[Floats, Ints, Ints]:
