@@ -35,6 +35,7 @@ USUAL_TRIANGLES = 2000  # what the default edge length aims at
 RESPACINGS = 2  # how often outlines are spaced anew around places that need shorter pieces
 MOST_TRIANGLES = 100_000_000  # some 2 GB of mesh, and several times that on the way
 LEAST_PIECE = 1e-3  # px; outlines are never cut so fine, so that this is as good as 0
+CONFETTI = 3000  # outlines: so many are seldom wanted
 ATTEMPTS = 12  # rounds of refining the outlines; two are the most that ordinary images take
 
 
@@ -159,7 +160,8 @@ def conform(
     from img2tri.triangles.relaxing import smallest_angles
 
     tell = progress or (lambda *_: None)
-    tell("spacing", 0.3)
+    count = len(outlines.left)
+    tell("spacing" if count < CONFETTI else f"spacing {count:,} outlines; min_area would drop specks", 0.3)
     twins = find_twins(outlines, links, periodic)
     coarse = _spaced(outlines, links, twins, sizes, tolerance, corners == "keep", keep_area)
     for _ in range(AREA_ROUNDS if keep_area else 0):

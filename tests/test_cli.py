@@ -803,3 +803,15 @@ def test_quality_of_what_is_no_mesh_on_stdin(typed, said, disc, monkeypatch, cap
     _stdin(monkeypatch, disc)
     assert main(["quality", *typed]) == 2
     assert said in _complaint(capsys)
+
+
+def test_confetti_is_told_of_with_the_option_that_helps(tmp_path, capsys):
+    noise = np.random.default_rng(0).random((250, 250)) < 0.3
+    Image.fromarray(noise.astype(np.uint8) * 255).save(tmp_path / "noise.png")
+    stages = []
+    mesh_image(noise, edge_length=8, progress=lambda stage, _: stages.append(stage))
+    assert any(re.fullmatch(r"spacing \d,\d\d\d outlines; min_area would drop specks", stage) for stage in stages)
+    assert main(["mesh", str(tmp_path / "noise.png"), "--edge-length", "8", "-o", str(tmp_path / "a.stl")]) == 0
+    assert re.search(r"chosen .*; \d,\d\d\d outlines, of which --min-area 20px2 would drop specks", capsys.readouterr().out)
+    assert main(["mesh", str(tmp_path / "noise.png"), "--edge-length", "8", "--min-area", "20px2", "-o", str(tmp_path / "a.stl")]) == 0
+    assert "specks" not in capsys.readouterr().out

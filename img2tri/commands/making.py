@@ -162,9 +162,13 @@ def about(name: str, mesh: TriangleMesh) -> list[str]:
 
 def _chosen(job: Job, mesh: TriangleMesh) -> list[str]:
     """Say what was chosen for the user, and which files there are."""
+    from img2tri.conforming import CONFETTI
+
     settings = mesh.origin.settings if mesh.origin else {}
     length, threshold = settings["edge_length"], settings["threshold"]
     chosen = f"edge length {length if isinstance(length, str) else f'{length:g}'}"
     chosen += "" if threshold is None else f", threshold {threshold:g} ({settings['threshold_from']})"
+    count = len(mesh.origin.outlines.left) if mesh.origin and "min_area" not in job.options else 0
+    chosen += "" if count < CONFETTI else f"; {count:,} outlines, of which --min-area 20px2 would drop specks"
     files = [*job.meshes, *filter(None, (job.plot, job.report))]
     return [f"{'chosen':<12}{chosen}", *([f"{'saved':<12}{', '.join(files)}"] if files else [])]
