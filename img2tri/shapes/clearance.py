@@ -68,23 +68,22 @@ def _within(a: Points, b: Points, reach: Floats, fresh: Bools) -> tuple[Ints, In
     from scipy.spatial import cKDTree
 
     middle, half = (a + b) / 2, np.maximum(np.abs((b - a).real), np.abs((b - a).imag)) / 2 + reach
-    near = np.flatnonzero(_around(middle, 2 * half.max(), fresh))
-    places, size = np.stack([middle.real, middle.imag], axis=1)[near], np.frexp(half[near])[1]
-    trees = {}
-    for exponent in np.unique(size):
-        own = np.flatnonzero(size == exponent)
-        trees[exponent] = near[own], cKDTree(places[own], balanced_tree=False, compact_nodes=False)
-    found = []
-    for one, (segments, tree) in trees.items():
-        for other, (others, beside) in trees.items():
-            if one == other:
-                i, j = tree.query_pairs(2.0 ** (one + 1), p=np.inf, output_type="ndarray").T
-            elif one < other:
-                pairs = tree.sparse_distance_matrix(beside, 2.0**one + 2.0**other, p=np.inf, output_type="ndarray")
-                i, j = pairs["i"], pairs["j"]
-            else:
-                continue
-            found.append(np.stack([segments[i], others[j]]))
+    places, chosen = np.stack([middle.real, middle.imag], axis=1), np.flatnonzero(fresh)
+    size = 4.0 ** np.ceil(np.log2(half) / 2)
+    # A tree for each class; where few segments are fresh, of those only that are anywhere near them.
+    classes = []
+    for largest in np.unique(size).tolist():
+        own = np.flatnonzero(size == largest)
+        if len(chosen) < len(fresh):
+            some, last = np.concatenate([own, chosen]), np.arange(len(own) + len(chosen)) >= len(own)
+            own = own[_around(middle[some], largest + half[chosen].max(), last)[: len(own)]]
+        classes.append((largest, own, cKDTree(places[own], balanced_tree=False, compact_nodes=False)))
+    found = [np.zeros((2, 0), np.int64)]
+    for k, (one, segments, tree) in enumerate(classes):
+        found.append(segments[tree.query_pairs(2 * one, p=np.inf, output_type="ndarray").T])
+        for other, others, beside in classes[k + 1 :]:
+            pairs = tree.sparse_distance_matrix(beside, one + other, p=np.inf, output_type="ndarray")
+            found.append(np.stack([segments[pairs["i"]], others[pairs["j"]]]))
     i, j = np.concatenate(found, axis=1)
     # Boxes are narrower than squares.
     away, room = middle[i] - middle[j], reach[i] + reach[j]
