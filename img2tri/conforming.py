@@ -35,6 +35,7 @@ USUAL_TRIANGLES = 2000  # what the default edge length aims at
 RESPACINGS = 2  # how often outlines are spaced anew around places that need shorter pieces
 MOST_TRIANGLES = 100_000_000  # some 2 GB of mesh, and several times that on the way
 LEAST_PIECE = 1e-3  # px; outlines are never cut so fine, so that this is as good as 0
+WAY_BACK = 0.7  # px: no point is farther from the middle of its link, or of its block
 CONFETTI = 3000  # outlines: so many are seldom wanted
 ATTEMPTS = 12  # rounds of refining the outlines; two are the most that ordinary images take
 
@@ -168,6 +169,7 @@ def conform(
         if area_error(coarse) <= AREA_ERROR:
             break
         coarse = twins.settle(keep_areas(coarse, tolerance=tolerance), tolerance=tolerance)
+    yielding = tolerance
     for attempt in range(ATTEMPTS):
         tell("triangles", 1 - 0.6 * 0.7**attempt)
         chains = coarse.coarse()
@@ -193,10 +195,12 @@ def conform(
                 raise
             doubtful = chains.points[segments[error.segments if len(error.segments) else slice(None)]].reshape(-1, 2)
         before = coarse
-        coarse = refine(coarse, doubtful[:, 0] + 1j * doubtful[:, 1], within=1.0 + 0.5 * attempt, tolerance=tolerance)
+        coarse = refine(coarse, doubtful[:, 0] + 1j * doubtful[:, 1], within=1.0 + 0.5 * attempt, tolerance=yielding)
         coarse = twins.settle(coarse, tolerance=tolerance)
-        if (coarse.breaks == before.breaks).all() and (coarse.reset == before.reset).all():
-            break
+        if (coarse.breaks == before.breaks).all() and (coarse.moved == before.moved).all():
+            if yielding >= WAY_BACK:
+                break
+            yielding = WAY_BACK  # rather too far from the outline than too sharp; the report tells
     twins.check(chains, vertices)
     counted = {"rounds": attempt + 1, "reset": int(coarse.reset.sum())}
     if sizes.shortest:

@@ -150,18 +150,22 @@ def _split(d: Draft, first: Ints, last: Ints) -> None:
 
 def _reset(d: Draft, entries: Ints, tolerance: float) -> None:
     """Let points go back to the middle of their links, as far as the tolerance allows; their pieces are to be tested again."""
-    points = np.unique(d.outlines.indices[entries])
-    points = points[~d.reset[points] & ~d.kept[points]]
-    if not len(points):
-        return
-    d.reset[points] = True
     chosen = np.zeros(len(d.dense), bool)
-    chosen[points] = True
-    touched = chosen[d.outlines.indices]
+    chosen[d.outlines.indices[entries]] = True
+    touched = np.flatnonzero((chosen & ~d.kept)[d.outlines.indices])
     at = d.outlines.indices[touched]
     way = d.links.middle[at] - d.dense[at]
-    d.moved[touched] = way * np.minimum(1, tolerance / np.maximum(np.abs(way), 1e-12))
+    way *= np.minimum(1, tolerance / np.maximum(np.abs(way), 1e-12))
+    # Those that have gone back go on if there is more tolerance than there was.
+    farther = ~d.reset[at] | (np.abs(way) > np.abs(d.moved[touched]) + LEAST_MOVE)
+    touched, way = touched[farther], way[farther]
+    if not len(touched):
+        return
+    d.reset[d.outlines.indices[touched]] = True
+    d.moved[touched] = way
     first, last = d.pieces
-    count = np.concatenate([[0], np.cumsum(touched)])
+    new = np.zeros(len(d.moved), bool)
+    new[touched] = True
+    count = np.concatenate([[0], np.cumsum(new)])
     stale = first[count[last + 1] > count[first]]
     d.measured[stale] = d.tested[stale] = -1
