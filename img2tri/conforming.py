@@ -169,7 +169,7 @@ def conform(
         if area_error(coarse) <= AREA_ERROR:
             break
         coarse = twins.settle(keep_areas(coarse, tolerance=tolerance), tolerance=tolerance)
-    yielding = tolerance
+    yielding, began = tolerance, 0
     for attempt in range(ATTEMPTS):
         tell("triangles", 1 - 0.6 * 0.7**attempt)
         chains = coarse.coarse()
@@ -195,12 +195,14 @@ def conform(
                 raise
             doubtful = chains.points[segments[error.segments if len(error.segments) else slice(None)]].reshape(-1, 2)
         before = coarse
-        coarse = refine(coarse, doubtful[:, 0] + 1j * doubtful[:, 1], within=1.0 + 0.5 * attempt, tolerance=yielding)
+        coarse = refine(coarse, doubtful[:, 0] + 1j * doubtful[:, 1], within=1.0 + 0.5 * (attempt - began), tolerance=yielding)
         coarse = twins.settle(coarse, tolerance=tolerance)
-        if (coarse.breaks == before.breaks).all() and (coarse.moved == before.moved).all():
-            if yielding >= WAY_BACK:
-                break
-            yielding = WAY_BACK  # rather too far from the outline than too sharp; the report tells
+        same = (coarse.breaks == before.breaks).all() and (coarse.moved == before.moved).all()
+        if same and yielding >= WAY_BACK:
+            break
+        if same or attempt + 1 == ATTEMPTS // 2:
+            # Rather too far from the outline than too sharp; the report tells.
+            yielding, began = max(tolerance, WAY_BACK), attempt + 1
     twins.check(chains, vertices)
     counted = {"rounds": attempt + 1, "reset": int(coarse.reset.sum())}
     if sizes.shortest:

@@ -161,3 +161,15 @@ def test_time_goes_with_the_triangles(name):
 def test_a_hundred_thousand_islands():
     mesh = mesh_image(islands(316).astype(bool))
     assert oracles.mesh_topology(mesh.triangles) == (316**2, 0)
+
+
+@pytest.mark.parametrize("seed", [10, 19, 40, 47, 59])
+def test_gray_noise_with_little_tolerance_has_no_sharp_triangles(seed):
+    """Its crossings lie far from the middles of their links, all over the image, and may not go back there for the tolerance's sake."""
+    noise = np.random.default_rng(seed).uniform(-3, 7, (22, 30))
+    mesh = mesh_image(noise, threshold=2.0, tolerance=0.1, edge_length=1.0)
+    oracles.check_valid(mesh.vertices, mesh.triangles)
+    assert oracles.angles(mesh.vertices, mesh.triangles).min() >= 30 - 1e-6
+    assert oracles.mesh_topology(mesh.triangles) == oracles.pixel_topology(noise > 2, 4)
+    assert mesh.report.hausdorff <= 0.7 + 1e-9
+    assert all("apart at" in line for line in mesh.report.warnings)
