@@ -186,11 +186,13 @@ def conform(
                 filled, chains = chains, twins.divided(chains, vertices)
                 if chains is filled:
                     break
+            failure = None
             narrow = smallest_angles(vertices[:, 0] + 1j * vertices[:, 1], triangles) < min_angle - 1e-9
             if not narrow.any() or attempt == ATTEMPTS - 1:
                 break
             doubtful = vertices[triangles[narrow]].reshape(-1, 2)
         except NetworkError as error:
+            failure = error
             if attempt == ATTEMPTS - 1:
                 raise
             doubtful = chains.points[segments[error.segments if len(error.segments) else slice(None)]].reshape(-1, 2)
@@ -199,6 +201,8 @@ def conform(
         coarse = twins.settle(coarse, tolerance=tolerance)
         same = (coarse.breaks == before.breaks).all() and (coarse.moved == before.moved).all()
         if same and yielding >= WAY_BACK:
+            if failure is not None:
+                raise failure
             break
         if same or attempt + 1 == ATTEMPTS // 2:
             # Rather too far from the outline than too sharp; the report tells.

@@ -7,6 +7,7 @@ import oracles
 import pytest
 import specimens
 
+from img2tri import conforming, mesh_image
 from img2tri.conforming import Sizes, conform, trace_outlines
 from img2tri.raster.zones import Zones
 from img2tri.records import Frame
@@ -50,3 +51,21 @@ def test_random_labels(count):
 def test_any_edge_length(edge_length):
     check(specimens.disc(30, 12), edge_length=edge_length)
     check(specimens.polycrystal(), edge_length=edge_length)
+
+
+def test_where_no_network_can_be_filled_its_error_is_what_one_gets(monkeypatch):
+    """Also where refining the outlines changes nothing any more, before all attempts are used up."""
+    from img2tri.errors import MeshError
+    from img2tri.triangles import filling
+    from img2tri.triangles.delaunay import NetworkError
+
+    tried = []
+
+    def never(*_, **__):
+        tried.append(1)
+        raise NetworkError("network: expected another one")
+
+    monkeypatch.setattr(filling, "fill", never)
+    with pytest.raises(MeshError, match="expected another one"):
+        mesh_image(np.ones((1, 1), bool), edge_length=8)
+    assert 1 < len(tried) <= conforming.ATTEMPTS

@@ -11,7 +11,7 @@ import shapely
 import specimens
 
 from img2tri import mesh_image
-from img2tri.second_order import STRAYING, second_order, smoothed
+from img2tri.second_order import second_order
 
 CENTRE, RADIUS = (60.2, 59.7), 50.0
 
@@ -153,18 +153,6 @@ def test_spacing_and_origin_only_scale_and_shift():
     one = curved(mesh_image(specimens.disc(), edge_length=6))
     other = curved(mesh_image(specimens.disc(), edge_length=1.5, spacing=0.25, origin=(7, -3)))
     assert np.allclose(other.nodes, one.nodes * 0.25 + (7, -3), atol=1e-9)
-
-
-def test_smoothing_moves_outlines_little_and_leaves_their_ends():
-    outlines = mesh_image(specimens.polycrystal(96, 8), labels=True, background=None).origin.outlines
-    made = smoothed(outlines)
-    ends = np.concatenate([outlines.indices[outlines.starts[:-1]], outlines.indices[outlines.starts[1:] - 1]])
-    before = outlines.points[:, 0] + 1j * outlines.points[:, 1]
-    assert (made[ends] == before[ends]).all()
-    segments, _, _ = outlines.segments
-    line = shapely.union_all(shapely.linestrings(outlines.points[segments]))
-    assert shapely.distance(line, shapely.points(made.real, made.imag)).max() <= STRAYING + 0.05
-    assert (made != before).any()
 
 
 @pytest.mark.parametrize(("image", "most", "kink"), [(MASK, 1.5e-3, 0.05), (GRAY, 1e-3, 0.03)])

@@ -77,40 +77,6 @@ def convolve(line: Points, kernel: Floats) -> Points:
     return result
 
 
-def unshrinking(scale: float) -> Floats:
-    """Return the kernel 2 G - G * G of a Gaussian G: it smooths as G does, and takes its shrinkage of curves back.
-
-    Examples
-    --------
-    >>> kernel = unshrinking(2.0)
-    >>> bool(abs(kernel.sum() - 1) < 1e-12), len(kernel)
-    (True, 25)
-    """
-    reach = int(np.ceil(3 * scale))
-    x = np.arange(-reach, reach + 1)
-    g = np.exp(-0.5 * (x / scale) ** 2)
-    g /= g.sum()
-    kernel = -np.convolve(g, g)
-    kernel[reach:-reach] += 2 * g
-    return kernel
-
-
-def widened(marks: Bools, reach: int) -> Bools:
-    """Mark everything within `reach` places of a mark.
-
-    Examples
-    --------
-    >>> widened(np.array([False, False, True, False, False, False]), 1).tolist()
-    [False, True, True, True, False, False]
-    """
-    edges = np.zeros(len(marks) + 1, np.int64)
-    at = np.flatnonzero(marks)
-    np.add.at(edges, np.maximum(at - reach, 0), 1)
-    np.add.at(edges, np.minimum(at + reach + 1, len(marks)), -1)
-    result: Bools = np.cumsum(edges[:-1]) > 0
-    return result
-
-
 def cross(a: Points, b: Points) -> Floats:
     """Cross product of plane vectors written as complex numbers."""
     result: Floats = a.real * b.imag - a.imag * b.real

@@ -1,16 +1,15 @@
-"""Speed, growth, memory and quality of the conforming recipe, and of others that mesh the same outlines.
+"""Speed, growth, memory and quality of the conforming recipe. Others are in test_peers, the paper's listing in test_listing.
 
     pytest -m benchmark -s tests/benchmarks/test_meshing.py
 
 Prints the table of the README. Machines differ, so times are given as multiples of FLOOR: the time pythoncdt alone takes, in the
 same process, to triangulate the final vertices with the final boundary edges. Ours is the time from the mask in memory to the
-mesh in memory, everything included; the others are given our outline. All times are of the processor, so that other work on the
-machine counts little. Nothing here fails for being slow.
+mesh in memory, everything included. All times are of the processor, so that other work on the machine counts little. Nothing here
+fails for being slow.
 """
 
 from __future__ import annotations
 
-import math
 import subprocess
 import sys
 import time
@@ -18,8 +17,6 @@ import time
 import numpy as np
 import oracles
 import pytest
-import shapely
-from benchmarks import listing
 from benchmarks.shapes import blob
 from scipy.spatial import cKDTree
 
@@ -102,6 +99,20 @@ def test_speed_and_quality():
         row(f"{name}, {edge_length}", mesh.vertices, mesh.triangles, spent, floor(mesh))
 
 
+def test_graded():
+    """Edge lengths that are a function of the place, gradation 0.3."""
+    n = 1024
+    image = blob(n)
+    print("\n| blob(1024), edge lengths     | triangles | x FLOOR  | angle | q_mean |\n|---|---|---|---|---|")
+    for name, wanted in {
+        "3 to 12 from left to right": lambda p: 3 + 9 * p[:, 0] / n,
+        "waves, 3 to 9": lambda p: 6 + 3 * np.sin(p[:, 0] / 40) * np.sin(p[:, 1] / 40),
+        "growing from 2 at a spot": lambda p: 2 + 0.3 * np.hypot(*(p - [0.3 * n, 0.5 * n]).T),
+    }.items():
+        mesh, spent = seconds(lambda wanted=wanted: mesh_image(image, edge_length=wanted, gradation=0.3))
+        row(name, mesh.vertices, mesh.triangles, spent, floor(mesh))
+
+
 def test_growth():
     image, per_triangle = blob(4096), []
     print("\nblob(4096), all the same but the edge length; ns per triangle relative to the first")
@@ -134,99 +145,3 @@ def test_peak_memory():
         code = MEMORY.format(path=sys.path, edge_length=edge_length)
         found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
         print(f"  {found[0]:>9} triangles   {float(found[1]):6.1f} bytes per triangle", flush=True)
-
-
-def test_others():
-    """On the outline of our mesh of blob(512); scipy, which has no outlines, on its vertices; the listing, on the mask."""
-    image, edge_length = blob(512), 8
-    mesh = mesh_image(image, edge_length=edge_length)
-    mesh, spent = seconds(lambda: mesh_image(image, edge_length=edge_length))
-    base = floor(mesh)
-    edges = oracles.boundary(mesh.triangles)
-    at, ends = np.unique(edges, return_inverse=True)
-    points, edges = mesh.vertices[at], ends.reshape(-1, 2)
-    area = 1.5 * math.sqrt(3) / 4 * edge_length**2  # the largest, which makes the mean edge about as long as wanted
-    table()
-    row("img2tri", mesh.vertices, mesh.triangles, spent, base)
-    for name, peer in {
-        "pythoncdt, refined": lambda: refined_by_pythoncdt(points, edges, area),
-        "Triangle, pq30a": lambda: refined_by_triangle(points, edges, area),
-        "Gmsh, frontal": lambda: meshed_by_gmsh(points, edges, edge_length),
-        "scipy Delaunay, same vertices": lambda: delaunay_by_scipy(mesh.vertices),
-        "the paper's listing": lambda: by_the_listing(image, edge_length),
-    }.items():
-        try:
-            repeats = 1 if "listing" in name else 5
-            (vertices, triangles), theirs = seconds(peer, repeats)
-        except ImportError as missing:
-            print(f"| {name:28} | {missing.name} is not installed")
-            continue
-        row(name, vertices, triangles, theirs, base)
-
-
-def refined_by_pythoncdt(points, edges, area):
-    import pythoncdt
-
-    triangulation = inserted(points, edges)
-    outside, criterion = triangulation.collect_outer_triangles_and_holes(), pythoncdt.RefinementCriterion
-    for what, threshold in (
-        (criterion.SMALLEST_ANGLE, math.radians(20)),
-        (criterion.LARGEST_AREA, area),
-        (criterion.SMALLEST_ANGLE, math.radians(30)),
-    ):
-        triangulation.refine_triangles(1_000_000, what, threshold, outside, 0.0)
-    triangulation.finalize_triangulation(outside)
-    corners = triangulation.vertices_array()
-    return np.stack([corners["x"], corners["y"]], axis=1), triangulation.triangles_array()["vertices"].astype(np.int64)
-
-
-def refined_by_triangle(points, edges, area):
-    import triangle
-
-    given = {"vertices": points, "segments": edges}
-    holes = [h for p in shapely.get_parts(shapely.polygonize(shapely.linestrings(points[edges]))) for h in holes_of(p)]
-    mesh = triangle.triangulate({**given, "holes": holes} if holes else given, f"pq30a{area:.6f}")
-    return mesh["vertices"], mesh["triangles"]
-
-
-def holes_of(polygon):
-    return [shapely.get_coordinates(shapely.point_on_surface(shapely.Polygon(ring)))[0] for ring in polygon.interiors]
-
-
-def meshed_by_gmsh(points, edges, edge_length):
-    import gmsh
-
-    gmsh.initialize(interruptible=False)
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
-        gmsh.option.setNumber("General.NumThreads", 1)
-        gmsh.option.setNumber("Mesh.MeshSizeMax", edge_length)
-        gmsh.option.setNumber("Mesh.Algorithm", 6)
-        for x, y in points:
-            gmsh.model.geo.addPoint(x, y, 0, edge_length)
-        lines = [gmsh.model.geo.addLine(int(a) + 1, int(b) + 1) for a, b in edges]
-        for line in lines:
-            gmsh.model.geo.mesh.setTransfiniteCurve(line, 2)
-        loops = gmsh.model.geo.addCurveLoops(lines)
-        gmsh.model.geo.addPlaneSurface(loops)
-        gmsh.model.geo.synchronize()
-        gmsh.model.mesh.generate(2)
-        tags, places, _ = gmsh.model.mesh.getNodes()
-        corners = gmsh.model.mesh.getElementsByType(2)[1].reshape(-1, 3).astype(np.int64)
-    finally:
-        gmsh.finalize()
-    number = np.zeros(int(tags.max()) + 1, np.int64)
-    number[tags.astype(np.int64)] = np.arange(len(tags))
-    return places.reshape(-1, 3)[:, :2], number[corners]
-
-
-def delaunay_by_scipy(vertices):
-    from scipy.spatial import Delaunay
-
-    return vertices, Delaunay(vertices).simplices
-
-
-def by_the_listing(image, edge_length):
-    binary, distance = image * np.uint8(255), 0.7 * edge_length
-    [(vertices, triangles, _)] = listing.put_together(binary, 150, 1300, distance, distance, np.random.default_rng(0))
-    return vertices, triangles

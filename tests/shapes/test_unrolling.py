@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from strategies import QUICK
 
-from img2tri.shapes.unrolling import Unrolled, convolve, cross, unshrinking, widened
+from img2tri.shapes.unrolling import Unrolled, convolve, cross
 
 
 def continued(z, place, ring):
@@ -67,7 +67,7 @@ def test_a_straight_line_goes_on_straight_and_a_regular_ring_round():
 
 def test_smoothing_leaves_the_ends_of_open_chains_where_they_are():
     z = np.random.default_rng(0).random(20) + 1j * np.random.default_rng(1).random(20)
-    kernel = unshrinking(2.0)
+    kernel = np.hanning(13)[1:-1] / np.hanning(13).sum()
     line = Unrolled(np.arange(20), np.array([0, 20]), np.array([False]), np.array([True]), len(kernel) // 2)
     smooth = convolve(line.points(z), kernel)[line.own]
     assert smooth[[0, -1]] == pytest.approx(z[[0, -1]], abs=1e-12)
@@ -82,29 +82,6 @@ def test_convolution_is_the_sum_it_stands_for(length):
     padded = np.pad(line, half)
     expected = [(padded[i : i + length] * kernel[::-1]).sum() for i in range(30)]
     np.testing.assert_allclose(convolve(line, kernel), expected, atol=1e-12)
-
-
-@pytest.mark.parametrize("scale", [1.0, 2.2, 4.6, 9.2])
-def test_the_kernel_smooths_and_gives_the_shrinkage_back(scale):
-    kernel = unshrinking(scale)
-    reach = len(kernel) // 2
-    x = np.arange(-reach, reach + 1)
-    assert np.array_equal(kernel, kernel[::-1])
-    # Up to third degree nothing is changed: sum 1, second moment 0. A Gaussian has the second moment scale^2.
-    assert kernel.sum() == pytest.approx(1, abs=1e-12)
-    assert (kernel * x**2).sum() == pytest.approx(0, abs=1e-9)
-    # A wave of period p keeps 1 - (1 - g)^2, g = exp(-2 (pi scale / p)^2) being what a Gaussian leaves; cut off at 3 scales.
-    for period in (2, 5, 20, 100):
-        left = (kernel * np.cos(2 * np.pi * x / period)).sum()
-        assert left == pytest.approx(1 - (1 - np.exp(-2 * (np.pi * scale / period) ** 2)) ** 2, abs=0.02)
-
-
-@QUICK
-@given(st.lists(st.booleans(), min_size=1, max_size=50), st.integers(0, 60))
-def test_marks_are_widened_by_just_so_much(marks, reach):
-    marks = np.array(marks)
-    expected = [marks[max(0, i - reach) : i + reach + 1].any() for i in range(len(marks))]
-    assert np.array_equal(widened(marks, reach), expected)
 
 
 def test_cross_product():
