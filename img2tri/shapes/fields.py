@@ -114,9 +114,10 @@ def _limited(grid: Floats, growth: float) -> Floats:
     """Limit the growth from cell to cell."""
     import cv2
 
-    down, right = np.diff(grid, axis=0, append=grid[-1:]), np.diff(grid, axis=1, append=grid[:, -1:])
-    if np.hypot(down, right).max() <= growth * (1 + 1e-6):
-        return grid  # it grows no faster anywhere
+    straight, slanting = (grid[1:] - grid[:-1], grid[:, 1:] - grid[:, :-1]), (grid[1:, 1:] - grid[:-1, :-1], grid[1:, :-1] - grid[:-1, 1:])
+    steepest = max(np.abs(step).max(initial=0) / length for steps, length in ((straight, 1), (slanting, 2**0.5)) for step in steps)
+    if steepest <= growth * (1 + 1e-6):
+        return grid  # from no cell to one beside it, so from none to any
     low, high = float(grid.min()), float(grid.max())
     result = grid
     for level in low * SCALE ** np.arange(np.ceil(np.log(high / low) / np.log(SCALE)) if high > low else 0):

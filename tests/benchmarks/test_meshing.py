@@ -85,8 +85,8 @@ def row(name, vertices, triangles, spent, base):
     print(f"| {name:28} | {len(triangles):8} | {spent / base:8.2f} | {angles.min():5.1f} | {quality:.4f} |", flush=True)
 
 
-def table():
-    print(f"\n| {'mask, edge length':28} | {'triangles':8} | {'x FLOOR':8} | angle | q_mean |\n|{'---|' * 5}")
+def table(what="mask, edge length"):
+    print(f"\n| {what:28} | {'triangles':8} | {'x FLOOR':8} | angle | q_mean |\n|{'---|' * 5}")
 
 
 def test_speed_and_quality():
@@ -103,7 +103,7 @@ def test_graded():
     """Edge lengths that are a function of the place, gradation 0.3."""
     n = 1024
     image = blob(n)
-    print("\n| blob(1024), edge lengths     | triangles | x FLOOR  | angle | q_mean |\n|---|---|---|---|---|")
+    table("blob(1024), edge lengths")
     for name, wanted in {
         "3 to 12 from left to right": lambda p: 3 + 9 * p[:, 0] / n,
         "waves, 3 to 9": lambda p: 6 + 3 * np.sin(p[:, 0] / 40) * np.sin(p[:, 1] / 40),

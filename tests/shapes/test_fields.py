@@ -117,3 +117,21 @@ def test_what_is_no_length_is_refused(wanted, words):
 def test_a_wrong_length_of_a_label_names_it():
     with pytest.raises(ParameterError, match=r"^edge_length\[1\]: expected a number above 0, found -1"):
         length_field({1: -1}, FRAME, LABELS, gradation=0.3)
+
+
+@pytest.mark.parametrize("steepness", [0.1, 0.3, 0.31, 2.0])
+def test_what_grows_no_faster_is_left_as_it_is(steepness):
+    """Within the steps in which reach is looked at; a cone as steep as the limit is not touched, a steeper one is cut down to it."""
+    frame = Frame((60, 80))
+
+    def cone(places):
+        return 2 + steepness * np.hypot(*(places - [31.3, 22.8]).T)
+
+    _, field = length_field(cone, frame, np.ones((60, 80), int), gradation=0.3)
+    y, x = np.mgrid[:60, :80] + 0.5
+    asked = cone(np.stack([x.ravel(), y.ravel()], axis=1)).reshape(60, 80)
+    assert (field.grid <= asked + 1e-12).all()
+    assert (field.grid == asked).all() == (steepness <= 0.3)
+    lowest = np.unravel_index(asked.argmin(), asked.shape)
+    limit = asked.min() + 0.3 * np.hypot(x - x[lowest], y - y[lowest])
+    assert (field.grid <= 1.12 * limit).all()
