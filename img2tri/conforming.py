@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -28,6 +29,7 @@ from img2tri.shapes.links import Links, pixel_areas
 from img2tri.shapes.periodic import FILLINGS, Twins, find_twins
 from img2tri.shapes.placing import place, place_on_sides
 from img2tri.shapes.sizing import by_curvature, by_pieces, by_thickness, limit_growth
+from img2tri.shapes.sliding import rooms, slid
 from img2tri.shapes.unrolling import Points
 
 AREA_ROUNDS, AREA_ERROR = 4, 1e-4  # how often breaks are moved for the sake of areas, and the relative error that is left
@@ -95,7 +97,7 @@ class Sizes:
     elements_across: float | None = None
     segments_per_turn: float | None = None
     shortest: float = 0.0
-    gradation: float = 0.2
+    gradation: float = 0.15
 
 
 def wanted_sizes(
@@ -156,6 +158,7 @@ def conform(
 ) -> Made:
     """Mesh all regions of an image, given its dense outlines; lengths in px."""
     from img2tri.scattering import scattered
+    from img2tri.triangles.band import Slide
     from img2tri.triangles.delaunay import NetworkError
     from img2tri.triangles.filling import fill
     from img2tri.triangles.relaxing import smallest_angles
@@ -173,6 +176,7 @@ def conform(
     for attempt in range(ATTEMPTS):
         tell("triangles", 1 - 0.6 * 0.7**attempt)
         chains = coarse.coarse()
+        slide = Slide(rooms(coarse, shortest=sizes.shortest), partial(slid, coarse, tolerance=tolerance))
         try:
             for _ in range(FILLINGS):
                 segments, left, right = chains.segments
@@ -181,7 +185,7 @@ def conform(
                 else:
                     vertices, triangles, regions = fill(
                         chains.points, segments, left, right, edge_length=sizes.longest, min_angle=min_angle,
-                        gradation=sizes.gradation, size=sizes.field, seed=seed,
+                        gradation=sizes.gradation, size=sizes.field, slide=slide, seed=seed,
                     )  # fmt: skip
                 filled, chains = chains, twins.divided(chains, vertices)
                 if chains is filled:

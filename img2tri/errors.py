@@ -62,7 +62,7 @@ def finite(name: str, value: object, *, above: float | None = None, least: float
     try:
         # All that Python counts among numbers, numpy's and Decimal too; no bool, no text, which float() would take.
         plain = getattr(value, "ndim", 0) == 0 and getattr(getattr(value, "dtype", None), "kind", "f") in "iuf"
-        known = plain and isinstance(value, (SupportsFloat, SupportsIndex)) and not _is_bool(value)
+        known = plain and isinstance(value, (int, float, SupportsFloat, SupportsIndex)) and not _is_bool(value)
         number = float(value) if known else math.nan  # type: ignore[arg-type]
     except (TypeError, ValueError, OverflowError):
         number = math.nan

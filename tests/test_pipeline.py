@@ -28,7 +28,7 @@ Y, X = np.mgrid[:60, :80] + 0.5
 RAMP = np.where(np.hypot(X - 40, Y - 30) < 26, 100 + X, 0).astype(np.uint8)  # a disc whose gray grows to the right
 UNEVEN = (np.hypot(X - 30, Y - 25) < 20) & ~(np.hypot(X - 24, Y - 22) < 5)  # with a hole, and not its own mirror image
 SHAPES = UNEVEN | (np.hypot(X - 65, Y - 20) < 7)  # and a smaller one beside it
-COMB = specimens.MASKS["comb"].repeat(3, 0).repeat(3, 1)
+COMB, SPIRAL = (specimens.MASKS[name].repeat(3, 0).repeat(3, 1) for name in ("comb", "spiral"))
 
 
 def same(a, b):
@@ -146,7 +146,7 @@ CHANGES = {
     "min_edge_length": (UNEVEN, {"segments_per_turn": 60}, {"segments_per_turn": 60, "min_edge_length": 3}),
     "elements_across": (COMB, {}, {"elements_across": 3}),
     "segments_per_turn": (UNEVEN, {}, {"segments_per_turn": 60}),
-    "min_angle": (COMB, {"min_angle": 0, "edge_length": 9}, {"min_angle": 32, "edge_length": 9}),
+    "min_angle": (SPIRAL, {"min_angle": 0, "edge_length": 9}, {"min_angle": 32, "edge_length": 9}),
     "tolerance": (UNEVEN, {"tolerance": "0.1px", "edge_length": 12}, {"tolerance": "1px", "edge_length": 12}),
     "smoothing": (UNEVEN, {"smoothing": "none"}, {"smoothing": "uniform"}, {"smoothing": "cotangent"}),
     "iterations": (UNEVEN, {"smoothing": "uniform", "iterations": 1}, {"smoothing": "uniform", "iterations": 5}),

@@ -54,8 +54,9 @@ class Draft:
         """First and last entry of each piece."""
         at = np.flatnonzero(self.breaks)
         # Both ends of every chain are breaks: from one to the next chain there is no piece.
-        between = np.searchsorted(at, self.outlines.starts[1:-1]) - 1
-        return np.delete(at[:-1], between), np.delete(at[1:], between)
+        one = np.ones(max(len(at) - 1, 0), bool)
+        one[np.searchsorted(at, self.outlines.starts[1:-1]) - 1] = False
+        return at[:-1][one], at[1:][one]
 
     @property
     def places(self) -> Points:

@@ -147,14 +147,11 @@ def beyond(line: Unrolled, steps: Floats, marks: Bools, distance: float) -> Bool
 
 
 def faded(line: Unrolled, values: Floats, reach: float) -> Floats:
-    """Let each value (k,) other than 0 fade to both sides, over about `reach` places; those of one sign near each other do not add up."""
-    result, fading = np.zeros(len(values)), _gaussian(reach)
+    """Let each value (k,) other than 0 fade to both sides, over about `reach` places; those near each other do not add up."""
+    fading = _gaussian(reach)
     fading /= fading.max()
-    for some in (np.maximum(values, 0), np.minimum(values, 0)):
-        if some.any():
-            crowd = np.convolve((some != 0).astype(np.float64), fading, "same")[line.original]
-            result += np.convolve(some / np.maximum(crowd, 1), fading, "same")
-    return np.asarray(result[line.original])
+    crowd = np.convolve((values != 0).astype(np.float64), fading, "same")[line.original]
+    return np.asarray(np.convolve(values / np.maximum(crowd, 1), fading, "same")[line.original])
 
 
 def _gaussian(scale: float) -> Floats:

@@ -6,6 +6,7 @@ follows the length of the outlines, not the area, and a large mesh costs a fract
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +22,22 @@ from img2tri.triangles.repairing import repaired
 
 CLEAR = 0.66  # lattice nodes nearer to an outline or apex than this times the wanted length are dropped
 REPAIRS = 2  # rounds of repairing and triangulating anew, if there is something to repair
+
+
+@dataclass(frozen=True, eq=False)
+class Slide:
+    """How points of a network may slide along its outlines.
+
+    Attributes
+    ----------
+    room
+        (n,) float64, how far each may, parallel to the line between its neighbours; 0 for those that stay.
+    settled
+        Function of the places (n, 2) they slid to, that returns those (n, 2) where they may stay.
+    """
+
+    room: Floats
+    settled: Callable[[Floats], Floats]
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,23 +127,30 @@ def _clear(near: Complex, points: Complex, wanted: Floats) -> Bools:
     return clear
 
 
-def settled(band: Band) -> tuple[Complex, Ints, Ints]:
+def settled(band: Band, slide: Slide | None = None) -> tuple[Complex, Ints, Ints]:
     """Triangulate the band and move its loose points until triangles are good; return vertices, triangles, regions."""
-    fence, loose = band.fence, band.loose
-    fixed = len(fence.points)
-    for repairs_left in reversed(range(REPAIRS + 1)):
-        vertices = np.concatenate([fence.points, loose])
-        free = np.arange(len(vertices)) >= fixed
-        triangles, codes = triangulate(pairs(vertices), fence.segments, fence.left, fence.right)
-        if not repairs_left:
-            break
-        vertices = relaxed(vertices, triangles, free, SMOOTH)
+    walls, loose, size = band.fence.points, band.loose, len(band.fence.points)
+    rails = None if slide is None else band.fence.rails(slide.room)
+    for _ in range(REPAIRS):
+        vertices, free, triangles, codes = _joined(band.fence, walls, loose)
+        vertices = relaxed(vertices, triangles, free, SMOOTH, rails)
         added, stays = repaired(vertices, triangles, free)
+        walls, loose = vertices[:size], np.concatenate([vertices[size:][stays[size:]], added])
         if stays.all():
             break
-        loose = np.concatenate([vertices[fixed:][stays[fixed:]], added])
+    if slide is not None:
+        places = slide.settled(pairs(walls[: len(slide.room)]))
+        walls = np.concatenate([places[:, 0] + 1j * places[:, 1], walls[len(places) :]])
+    vertices, free, triangles, codes = _joined(band.fence, walls, loose)
     vertices = relaxed(vertices, triangles, free, ANNEAL)
     return climbed(vertices, triangles, free), triangles, codes
+
+
+def _joined(fence: Network, walls: Complex, loose: Complex) -> tuple[Complex, Bools, Ints, Ints]:
+    """Triangulate points on a fence, and loose ones; return all points, which are free, triangles, regions."""
+    vertices = np.concatenate([walls, loose])
+    triangles, codes = triangulate(pairs(vertices), fence.segments, fence.left, fence.right)
+    return vertices, np.arange(len(vertices)) >= len(walls), triangles, codes
 
 
 def completed(band: Band, vertices: Complex, triangles: Ints, codes: Ints) -> tuple[Complex, Ints, Ints]:

@@ -9,7 +9,8 @@ its edges. The way:
     lattice   hexagonal inside; its depth becomes triangles at once                        lattice.py
     finer     nodes of nested lattices, where shorter edges are wanted                     grading.py
     band      constrained Delaunay triangulation of what lies between                      band.py, delaunay.py
-    relax     move vertices, repair their number of triangles, move again                  relaxing.py, repairing.py
+    relax     move vertices, repair their number of triangles, move again;                 relaxing.py, repairing.py
+              those on outlines may slide along these
     mend      where an angle is still too small: Ruppert's refinement, in a patch          mending.py
 """
 
@@ -21,7 +22,7 @@ import numpy as np
 
 from img2tri.errors import ParameterError, finite, integer
 from img2tri.records import Floats, Ints
-from img2tri.triangles.band import band, completed, settled
+from img2tri.triangles.band import Slide, band, completed, settled
 from img2tri.triangles.delaunay import NetworkError, check_network
 from img2tri.triangles.grading import Sizes, pairs
 from img2tri.triangles.lattice import Lattice
@@ -37,8 +38,9 @@ def fill(
     *,
     edge_length: float,
     min_angle: float = 30.0,
-    gradation: float = 0.2,
+    gradation: float = 0.15,
     size: Floats | Callable[[Floats], Floats] | None = None,
+    slide: Slide | None = None,
     seed: int = 0,
 ) -> tuple[Floats, Ints, Ints]:
     """Fill the regions of a network of segments with triangles.
@@ -64,13 +66,15 @@ def fill(
     size : (n,) float64 or callable, optional
         Edge length wanted at each point; or a function of places (k, 2) that returns lengths (k,), which should itself grow by no more
         than `gradation`. Only what is below `edge_length` counts.
+    slide : Slide, optional
+        How points may slide along their outlines; None: they stay.
     seed : int
         0 centres the lattice on the network; another number shifts it by chance, for another mesh as good.
 
     Returns
     -------
     vertices : (v, 2) float64
-        The points, in their order; then all others.
+        The points, in their order, slid or not; then all others.
     triangles : (m, 3) int64
         Counter-clockwise. Every segment is an edge, or a chain of edges where it was long for the length wanted there.
     regions : (m,) int64
@@ -107,7 +111,7 @@ def fill(
         # To mend the mesh may take splitting an edge of the depth, which cannot be: then again with less depth, or none.
         for rings in (2, 8, lattice.rows):
             laid = band(network, at_points, at_middles, sizes, lattice, rings)
-            mesh = mended(*settled(laid), laid.fence, laid.own, min_angle)
+            mesh = mended(*settled(laid, slide), laid.fence, laid.own, min_angle)
             if mesh is not None:
                 break
     except NetworkError as error:

@@ -9,6 +9,7 @@ import numpy as np
 from img2tri.records import Floats, Ints
 from img2tri.triangles.grading import Sizes
 from img2tri.triangles.lattice import Complex
+from img2tri.triangles.relaxing import Rails
 
 ROUND_UP = 0.4  # a segment of n + this many wanted lengths or more is divided into n + 1 parts
 
@@ -85,6 +86,19 @@ class Network:
         changed = np.flatnonzero(parts[of] > 1)
         at_middles[changed] = sizes.at(network.middles[changed])
         return network, np.concatenate([at_points, sizes.at(points)]), at_middles
+
+    def rails(self, room: Floats) -> Rails:
+        """Let the first points slide, by so much, parallel to the line between their neighbours; but not where segments were divided."""
+        start, stop = self.segments.T
+        before, after = np.zeros((2, len(self.points)), np.complex128)
+        before[stop], after[start] = self.points[start], self.points[stop]
+        own = self.origin >= 0
+        divided = own & (np.bincount(self.origin[own])[self.origin] > 1)
+        stays = np.zeros(len(self.points), bool)
+        stays[self.segments[divided]] = True
+        at = np.flatnonzero((room > 0) & ~stays[: len(room)])
+        along = after[at] - before[at]
+        return Rails(at, along / np.abs(along), self.points[at], room[at])
 
     def joined(self, points: Complex, segments: Ints, right: Ints) -> Network:
         """Add points, and segments between these, with nothing meshed on their left."""

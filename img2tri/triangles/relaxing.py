@@ -12,12 +12,13 @@ equilateral, corner a alone would have to move by -X, corner b by -w^2 X, corner
 `relaxed` moves every vertex by the mean of what its triangles ask, weighted by quality^-power: Jacobi steps down the energy
 sum of weight |X|^2, whose matrix is C diag(weight) C* with a row of C for each vertex and a column for each triangle. With power 2 that
 is a quick smoother. Large powers hear only the worst triangle of each vertex: hill climbing for the smallest angle, but in a few
-array operations for all vertices.
+array operations for all vertices. Vertices on outlines take of their moves what goes along their *rails*.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import csc_array
@@ -35,6 +36,7 @@ Schedule = Sequence[tuple[int, float, int]]
 SMOOTH: Schedule = ((1, 1.0, 3),)
 ANNEAL: Schedule = ((1, 1.0, 2), (1, 0.8, 3), (2, 0.6, 3), (3, 0.5, 4), (4, 0.3, 6))
 CLIMB: Schedule = ((5, 0.3, 4), (6, 0.2, 6), (7, 0.1, 15))
+SLIDING = 0.8  # of its step is what a vertex on a rail takes
 TARGET = 44.0  # degrees: angles above this are not worth a climb
 WORST = 2.0  # degrees: a climb goes where angles are within this of the worst
 CLIMBS = 2  # one after the other, as the worst place may then be another
@@ -79,8 +81,33 @@ def smallest_angles(vertices: Complex, triangles: Ints) -> Floats:
     return angles
 
 
-def relaxed(vertices: Complex, triangles: Ints, free: Bools, schedule: Schedule) -> Complex:
-    """Move the free vertices (bool) by damped steps. The worst angle does not fall, nor does any one fall below 30 degrees."""
+@dataclass(frozen=True, eq=False)
+class Rails:
+    """Vertices that may slide along straight lines.
+
+    Attributes
+    ----------
+    at
+        (k,) int64, which.
+    along
+        (k,) complex, the unit directions of their lines.
+    start
+        (k,) complex, where they stand before they slide.
+    room
+        (k,) float64, how far from there they may go either way.
+    """
+
+    at: Ints
+    along: Complex
+    start: Complex
+    room: Floats
+
+
+def relaxed(vertices: Complex, triangles: Ints, free: Bools, schedule: Schedule, rails: Rails | None = None) -> Complex:
+    """Move the free vertices (bool) by damped steps, others along their rails.
+
+    The worst angle does not fall, nor does any one fall below 30 degrees.
+    """
     moved = vertices.copy()
     n, m = len(vertices), len(triangles)
     corners = _columns(triangles)
@@ -99,7 +126,12 @@ def relaxed(vertices: Complex, triangles: Ints, free: Bools, schedule: Schedule)
                     loud *= loud
                 weight[block] = loud
                 np.multiply(loud, defect, out=pull[block])
-            moved[where] += damping * np.asarray(asked @ pull)[where] / np.asarray(heard @ weight)[where]
+            pulled, heavy = np.asarray(asked @ pull), np.asarray(heard @ weight)
+            moved[where] += damping * pulled[where] / heavy[where]
+            if rails is not None:
+                step = SLIDING * damping * pulled[rails.at] / heavy[rails.at]
+                way = ((moved[rails.at] + step - rails.start) * rails.along.conj()).real
+                moved[rails.at] = rails.start + np.clip(way, -rails.room, rails.room) * rails.along
     return _guarded(vertices, moved, triangles)
 
 

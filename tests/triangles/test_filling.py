@@ -13,6 +13,7 @@ from networks import NETWORKS, RING, area_of_ring, network, ring, wave
 
 from img2tri.errors import ParameterError
 from img2tri.triangles import delaunay
+from img2tri.triangles.band import Slide
 from img2tri.triangles.filling import fill
 from img2tri.triangles.grading import Sizes
 from img2tri.triangles.network import Network
@@ -261,3 +262,30 @@ def test_errors_name_the_segments_that_were_given():
         fill(square, segments, left, right, edge_length=2.0)
     assert set(caught.value.segments) <= {4, 5, 6, 7}
     assert len(caught.value.segments)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_points_slide_as_far_as_they_may_and_triangles_get_better(seed):
+    """Two rings, one in the other, of as many segments: what is between is as good as these stand."""
+    turn = 2 * np.pi * np.random.default_rng(seed).uniform() / 60
+    inner = ring(60, 25) @ np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
+    given = network((ring(60, 30), 1, 0), (inner, 0, 1))
+    points = given[0]
+    room = np.where(np.arange(len(points)) % 5, 0.6, 0)
+    asked = []
+
+    def settled(places):
+        asked.append(places.copy())
+        return np.where(np.arange(len(points))[:, None] < 60, places, points)  # none of the inner ones may
+
+    fixed, fixed_triangles, _ = fill(*given, edge_length=3.0)
+    vertices, triangles, _ = fill(*given, edge_length=3.0, slide=Slide(room, settled))
+    oracles.check_valid(vertices, triangles)
+    (places,) = asked
+    way = np.hypot(*(places - points).T)
+    assert (way <= room + 1e-12).all()
+    assert way.max() > 0.05
+    assert np.array_equal(vertices[: len(points)], settled(places))
+    both = fill(*given, edge_length=3.0, slide=Slide(room, lambda places: places))
+    quality = [oracles.angles(v, t).min(axis=1).mean() for v, t in ((fixed, fixed_triangles), both[:2])]
+    assert quality[1] > quality[0]

@@ -82,3 +82,25 @@ def test_runs():
     of, place = runs(np.array([2, 1, 0, 3]))
     assert of.tolist() == [0, 0, 1, 3, 3, 3]
     assert place.tolist() == [0, 1, 0, 0, 1, 2]
+
+
+def test_rails_are_parallel_to_the_line_between_neighbours():
+    z = np.array([0, 2, 3 + 1j, 3 + 4j, 1j * 3])
+    ring = np.stack([np.arange(5), (np.arange(5) + 1) % 5], axis=1)
+    square = Network(z, ring, np.ones(5, int), np.zeros(5, int), np.arange(5))
+    rails = square.rails(np.array([0, 0.1, 0.2, 0.0, 0.3]))
+    assert rails.at.tolist() == [1, 2, 4]
+    assert rails.room.tolist() == [0.1, 0.2, 0.3]
+    assert (rails.start == z[[1, 2, 4]]).all()
+    line = np.array([z[2] - z[0], z[3] - z[1], z[0] - z[3]])
+    assert rails.along == pytest.approx(line / np.abs(line))
+
+
+def test_what_ends_a_divided_segment_has_no_rail():
+    """The parts of a segment lie on one line, which would get a kink."""
+    z = np.array([0, 8, 8 + 1j, 8 + 2j, 4 + 2j, 2j])
+    ring = np.stack([np.arange(6), (np.arange(6) + 1) % 6], axis=1)
+    network = Network(z, ring, np.ones(6, int), np.zeros(6, int), np.arange(6))
+    divided, _, _ = network.divided(sizes(lambda x: np.full(len(x), 4.0)))
+    assert len(divided.segments) == 7
+    assert divided.rails(np.full(6, 0.1)).at.tolist() == [2, 3, 4, 5]

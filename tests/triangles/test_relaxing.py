@@ -8,7 +8,7 @@ import pytest
 from scipy.spatial import Delaunay
 
 from img2tri.triangles.grading import pairs
-from img2tri.triangles.relaxing import ANNEAL, DEFECT, SMOOTH, climbed, relaxed, shapes, smallest_angles
+from img2tri.triangles.relaxing import ANNEAL, DEFECT, SMOOTH, Rails, climbed, relaxed, shapes, smallest_angles
 from img2tri.triangles.repairing import repaired, surplus
 
 TURN = np.exp(1j * np.pi / 3)
@@ -127,3 +127,42 @@ def test_repairing_and_triangulating_anew_leaves_fewer_bad_vertices(seed):
     turned = oracles.areas(pairs(points), anew)[:, None] < 0
     left = np.abs(surplus(points, np.where(turned, anew[:, ::-1], anew))[68:]) > 1.5
     assert left.sum() < bad.sum()
+
+
+def railed(seed, room):
+    """A fair mesh of a square whose points lie by chance: vertices on its sides may slide along these, but for the corners."""
+    rng = np.random.default_rng(seed)
+    n = 12
+    side = np.arange(n) / n + np.where(np.arange(n) > 0, rng.uniform(-0.3, 0.3, n) / n, 0)
+    frame = np.concatenate([1j**k * (side - 0.5 - 0.5j) for k in range(4)])
+    x, y = np.mgrid[1:n, 1:n] / n
+    inside = (x + 1j * y).ravel() - 0.5 - 0.5j + (rng.uniform(-0.2, 0.2, (n - 1) ** 2) + 1j * rng.uniform(-0.2, 0.2, (n - 1) ** 2)) / n
+    z = np.concatenate([frame, inside])
+    triangles = Delaunay(pairs(z)).simplices.astype(np.int64)
+    a = oracles.areas(pairs(z), triangles)
+    triangles[a < 0] = triangles[a < 0][:, ::-1]
+    sides = np.flatnonzero(np.arange(4 * n) % n)
+    rails = Rails(sides, 1j ** (sides // n), z[sides], np.full(len(sides), room))
+    return z, triangles[np.abs(a) > 1e-12], np.arange(len(z)) >= len(frame), rails
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_vertices_on_rails_keep_to_their_lines_and_help(seed):
+    z, triangles, free, rails = railed(seed, 0.02)
+    moved, without = (relaxed(z, triangles, free, ((1, 1.0, 12),), some) for some in (rails, None))
+    way = (moved[rails.at] - z[rails.at]) / rails.along
+    assert np.abs(way.imag).max() < 1e-12
+    assert 0.01 < np.abs(way.real).max() <= 0.02 + 1e-12
+    stays = ~free
+    stays[rails.at] = False
+    assert (moved[stays] == z[stays]).all()
+    assert shapes(moved, triangles)[1].mean() > shapes(without, triangles)[1].mean() + 0.005
+    assert smallest_angles(moved, triangles).min() >= smallest_angles(z, triangles).min() - 1e-9
+
+
+def test_room_is_measured_from_the_start_of_a_rail_however_often_one_slides():
+    z, triangles, free, rails = railed(1, 0.01)
+    moved = z
+    for _ in range(5):
+        moved = relaxed(moved, triangles, free, SMOOTH, rails)
+    assert np.abs(moved[rails.at] - z[rails.at]).max() == pytest.approx(0.01)

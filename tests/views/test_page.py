@@ -268,7 +268,7 @@ def test_places_are_found_in_the_warnings_of_a_real_certificate():
     mesh = img2tri.mesh_image(np.pad(np.ones((20, 30), bool), 3), edge_length=3, spacing=0.5)
     inner = int(np.argmin(np.abs(mesh.vertices - mesh.vertices.mean(axis=0)).sum(axis=1)))
     moved = mesh.vertices.copy()
-    moved[[inner, 0]] += [[1.2, 0.3], [1.5, 1.5]]
+    moved[[inner, 0]] += [[1.2, 0.3], [1.8, 1.5]]
     report = json.loads(img2tri.TriangleMesh(moved, mesh.triangles, mesh.regions, mesh.frame, {}, mesh.origin).report.to_json())
     found = tables.places(report)
     assert {place.source for place in found} >= {"warning", "narrow_at", "wrong_pixels_at"}
