@@ -2,11 +2,13 @@
 
 One length for all needs no field. A length for each region, an array on the image grid, or a function of places becomes a grid over
 the image, in which no length grows faster than the gradation per unit of distance: from each step of a geometric scale of
-lengths, a distance transform says how far it reaches.
+lengths, a distance transform says how far it reaches. What is given for each pixel gets cells as small as these, a function
+cells as small as its lengths need.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -18,6 +20,8 @@ from img2tri.errors import ParameterError
 from img2tri.records import Floats, Frame
 
 CELLS = 2**20  # of the grid at most
+FIRST = 2**12  # cells, in which a function is asked first, to see how short its lengths are
+RESOLUTION, ENOUGH = 1.0, 1.2  # cells should be this part of the shortest length; those larger by this factor are small enough
 SCALE = 1.1  # between the lengths whose reach is looked at
 
 EdgeLength = float | str | Mapping[int, float | str] | Callable[[Floats], Floats] | NDArray[Any]
@@ -73,27 +77,57 @@ def length_field(
         return frame.length(name, wanted) / frame.pixel, None
     if not isinstance(wanted, (Mapping, np.ndarray)) and (not callable(wanted) or isinstance(wanted, type)):
         raise ParameterError(f"{name}: expected a length, lengths by label, an array or a function, found {type(wanted).__name__}")
-    width, height = frame.plane(0 if frame.upward else frame.shape[0], frame.shape[1])
-    cell = max(1.0, float(np.sqrt(width * height / CELLS)))
-    ny, nx = max(1, round(height / cell)), max(1, round(width / cell))
-    y, x = (np.mgrid[:ny, :nx] + 0.5) * cell
-    places = frame.world(np.stack([x.ravel(), y.ravel()], axis=1))
     if callable(wanted):
-        lengths = np.asarray(wanted(places), np.float64)
-        if lengths.shape != (len(places),):
-            raise ParameterError(f"{name}: expected the function to return ({len(places)},) lengths, found shape {lengths.shape}")
+        lengths, cell = _asked(name, wanted, frame)
     else:
-        rows, columns = (np.clip(v.astype(np.int64), 0, n - 1) for v, n in zip(frame.row_column(places), frame.shape, strict=True))
-        lengths = _by_label(name, wanted, frame, labels) if isinstance(wanted, Mapping) else np.asarray(wanted)
-        if lengths.shape != frame.shape:
-            raise ParameterError(f"{name}: expected an array of the shape of the image {frame.shape}, found {lengths.shape}")
-        if lengths.dtype.kind not in "iuf":
-            raise ParameterError(f"{name}: expected an array of numbers, found {lengths.dtype}")
-        lengths = np.asarray(lengths[rows, columns], np.float64)
+        pixels = _by_label(name, wanted, frame, labels) if isinstance(wanted, Mapping) else np.asarray(wanted)
+        if pixels.shape != frame.shape:
+            raise ParameterError(f"{name}: expected an array of the shape of the image {frame.shape}, found {pixels.shape}")
+        if pixels.dtype.kind not in "iuf":
+            raise ParameterError(f"{name}: expected an array of numbers, found {pixels.dtype}")
+        lengths, cell = _shortest(_checked(name, np.asarray(pixels, np.float64)), frame)
+    grid = _limited(lengths / frame.pixel, gradation * cell)
+    return float(grid.max()), Field(grid, cell)
+
+
+def _cells(frame: Frame, least: float) -> tuple[int, int, float]:
+    """How many rows and columns of cells at least so wide there are, and how wide they are, in px."""
+    width, height = frame.shape[1] * frame.spacing[0] / frame.pixel, frame.shape[0] * frame.spacing[1] / frame.pixel
+    cell = max(least, math.sqrt(width * height / CELLS))
+    return max(1, round(height / cell)), max(1, round(width / cell)), cell
+
+
+def _asked(name: str, wanted: Callable[[Floats], Floats], frame: Frame) -> tuple[Floats, float]:
+    """Ask a function for the lengths in cells, and again in smaller ones as long as these are large for its shortest length."""
+    least = max(1.0, math.sqrt(math.prod(frame.shape) * math.prod(frame.spacing) / FIRST) / frame.pixel)
+    while True:
+        ny, nx, cell = _cells(frame, least)
+        y, x = (np.mgrid[:ny, :nx] + 0.5) * cell
+        lengths = np.asarray(wanted(frame.world(np.stack([x.ravel(), y.ravel()], axis=1))), np.float64)
+        if lengths.shape != (ny * nx,):
+            raise ParameterError(f"{name}: expected the function to return ({ny * nx},) lengths, found shape {lengths.shape}")
+        least = max(1.0, RESOLUTION * float(_checked(name, lengths).min()) / frame.pixel)
+        if cell <= ENOUGH * _cells(frame, least)[2]:
+            return lengths.reshape(ny, nx), cell
+
+
+def _shortest(pixels: Floats, frame: Frame) -> tuple[Floats, float]:
+    """Turn lengths in pixels to lengths in cells: the shortest of the pixels in it, or that of the pixel it lies in."""
+    ny, nx, cell = _cells(frame, 1.0)
+    lengths = pixels[::-1] if frame.upward else pixels
+    for axis, count in enumerate((ny, nx)):
+        per_cell = cell * frame.pixel / frame.spacing[1 - axis]
+        if per_cell > 1:
+            lengths = np.minimum.reduceat(lengths, (np.arange(count) * per_cell).astype(np.int64), axis=axis)
+        else:
+            lengths = np.take(lengths, ((np.arange(count) + 0.5) * per_cell).astype(np.int64), axis=axis)
+    return lengths, cell
+
+
+def _checked(name: str, lengths: Floats) -> Floats:
     if not (np.isfinite(lengths).all() and (lengths > 0).all()):
         raise ParameterError(f"{name}: expected lengths above 0 everywhere, found {lengths.min():g} to {lengths.max():g}")
-    grid = _limited(lengths.reshape(ny, nx) / frame.pixel, gradation * cell)
-    return float(grid.max()), Field(grid, cell)
+    return lengths
 
 
 def _by_label(name: str, wanted: Mapping[int, float | str], frame: Frame, labels: NDArray[Any]) -> Floats:

@@ -8,7 +8,7 @@ from scipy.spatial.distance import cdist
 
 from img2tri.errors import ParameterError
 from img2tri.records import Frame
-from img2tri.shapes.fields import SCALE, length_field
+from img2tri.shapes.fields import CELLS, FIRST, SCALE, length_field
 
 LABELS = np.zeros((30, 40), int)
 LABELS[5:12, 5:30], LABELS[20:, 33:] = 1, 2
@@ -84,10 +84,46 @@ def test_one_length_needs_no_field():
 
 
 def test_a_large_image_gets_coarser_cells():
-    _, field = length_field(lambda places: 5 + places[:, 0], Frame((3000, 2000)), LABELS, gradation=10)
-    assert field.cell == pytest.approx(np.sqrt(6e6 / 2**20))
-    assert 0.99 * 2**20 < field.grid.size < 1.01 * 2**20
-    assert field(np.array([[1000.0, 1500.0]])) == pytest.approx(1005, rel=1e-6)
+    _, field = length_field(lambda places: 0.1 + places[:, 0], Frame((3000, 2000)), LABELS, gradation=10)
+    assert field.cell == pytest.approx(np.sqrt(6e6 / CELLS))
+    assert 0.99 * CELLS < field.grid.size < 1.01 * CELLS
+    assert field(np.array([[1000.0, 1500.0]])) == pytest.approx(1000.1, rel=1e-6)
+
+
+@pytest.mark.parametrize("upward", [True, False])
+@pytest.mark.parametrize("spacing", [(1.0, 1.0), (0.5, 2.0)])
+def test_no_pixel_of_a_large_image_is_lost(spacing, upward):
+    """Not even a single one whose length is short, in cells of several pixels."""
+    frame = Frame((3000, 2000), spacing, upward=upward)
+    wanted = np.full(frame.shape, 50.0)
+    row, column = 1234, 567
+    wanted[row, column] = 5
+    _, field = length_field(wanted, frame, wanted, gradation=0.5)
+    at = in_plane(frame.xy(row + 0.5, column + 0.5)[None], frame)
+    assert field.cell > 1.5
+    assert field(at) * frame.pixel <= 5 + 0.5 * field.cell * frame.pixel
+    far = in_plane(frame.xy(row + 0.5 + 100 / spacing[1], column + 0.5)[None], frame)
+    assert field(far) * frame.pixel == 50
+    ny, nx = field.grid.shape
+    assert ny * field.cell == pytest.approx(3000 * spacing[1] / frame.pixel, abs=field.cell)
+    assert nx * field.cell == pytest.approx(2000 * spacing[0] / frame.pixel, abs=field.cell)
+
+
+@pytest.mark.parametrize("shortest", [0.2, 2.0, 8.0, 100.0])
+def test_a_function_is_asked_in_cells_as_small_as_its_shortest_length(shortest):
+    frame, asked = Frame((1000, 1000)), []
+
+    def cone(places):
+        asked.append(len(places))
+        return shortest + 0.3 * np.hypot(*(places - [312.3, 640.7]).T)
+
+    _, field = length_field(cone, frame, LABELS, gradation=0.3)
+    coarsest = 1000 / np.sqrt(FIRST)
+    assert max(1, min(shortest, coarsest)) <= field.cell <= max(1, min(1.7 * shortest, coarsest))
+    assert sum(asked) <= 2 * field.grid.size + FIRST
+    away = np.random.default_rng(0).uniform(0, 1000, (1000, 2))
+    truth = shortest + 0.3 * np.hypot(*(away - [312.3, 640.7]).T)
+    assert field(away) == pytest.approx(truth, abs=0.3 * field.cell)
 
 
 @pytest.mark.parametrize(
@@ -122,14 +158,9 @@ def test_a_wrong_length_of_a_label_names_it():
 @pytest.mark.parametrize("steepness", [0.1, 0.3, 0.31, 2.0])
 def test_what_grows_no_faster_is_left_as_it_is(steepness):
     """Within the steps in which reach is looked at; a cone as steep as the limit is not touched, a steeper one is cut down to it."""
-    frame = Frame((60, 80))
-
-    def cone(places):
-        return 2 + steepness * np.hypot(*(places - [31.3, 22.8]).T)
-
-    _, field = length_field(cone, frame, np.ones((60, 80), int), gradation=0.3)
     y, x = np.mgrid[:60, :80] + 0.5
-    asked = cone(np.stack([x.ravel(), y.ravel()], axis=1)).reshape(60, 80)
+    asked = 2 + steepness * np.hypot(x - 31.3, y - 22.8)
+    _, field = length_field(asked, Frame((60, 80), upward=False), asked, gradation=0.3)
     assert (field.grid <= asked + 1e-12).all()
     assert (field.grid == asked).all() == (steepness <= 0.3)
     lowest = np.unravel_index(asked.argmin(), asked.shape)
