@@ -32,7 +32,7 @@ from img2tri.shapes.sizing import by_curvature, by_pieces, by_thickness, limit_g
 from img2tri.shapes.sliding import rooms, slid
 from img2tri.shapes.unrolling import Points
 
-AREA_ROUNDS, AREA_ERROR = 4, 1e-4  # how often breaks are moved for the sake of areas, and the relative error that is left
+AREA_ROUNDS, AREA_ERROR = 2, 1e-4  # how often breaks are moved for the sake of areas, and the relative error that is left
 USUAL_TRIANGLES = 2000  # what the default edge length aims at
 RESPACINGS = 2  # how often outlines are spaced anew around places that need shorter pieces
 MOST_TRIANGLES = 100_000_000  # some 2 GB of mesh, and several times that on the way
@@ -176,7 +176,7 @@ def conform(
     for attempt in range(ATTEMPTS):
         tell("triangles", 1 - 0.6 * 0.7**attempt)
         chains = coarse.coarse()
-        slide = Slide(rooms(coarse, shortest=sizes.shortest), partial(slid, coarse, tolerance=tolerance))
+        slide = Slide(rooms(coarse, shortest=sizes.shortest), partial(slid, coarse, tolerance=tolerance, keep_area=keep_area))
         try:
             for _ in range(FILLINGS):
                 segments, left, right = chains.segments

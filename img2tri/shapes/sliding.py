@@ -12,9 +12,10 @@ from dataclasses import replace
 import numpy as np
 
 from img2tri.records import Floats, Ints
+from img2tri.shapes.areas import keep_areas
 from img2tri.shapes.clearance import to_segment
 from img2tri.shapes.coarsening import SHORT, settle
-from img2tri.shapes.drafts import SAME, Draft, remembered
+from img2tri.shapes.drafts import SAME, Draft
 from img2tri.shapes.leaning import Sideways
 from img2tri.shapes.unrolling import Points
 
@@ -36,21 +37,22 @@ def rooms(d: Draft, *, shortest: float = 0.0) -> Floats:
     return np.asarray(result[_entries(d)])
 
 
-def slid(d: Draft, points: Floats, *, tolerance: float) -> Floats:
-    """Return where the points (n, 2) of the coarse outline may be, which the mesh wants at these places."""
+def slid(d: Draft, points: Floats, *, tolerance: float, keep_area: bool = True) -> Floats:
+    """Return where the points (n, 2) of the coarse outline may be, which the mesh wants at these places; areas are kept if asked for."""
     entries, places = _entries(d), points[:, 0] + 1j * points[:, 1]
     goes = np.abs(places - d.places[entries]) > SAME
     old, places = entries[goes], places[goes]
     new = _nearest(d, old, places)
     goes = _astray(d, new, places) <= tolerance
-    known = d
     for _ in range(ROUNDS):
         old, new, places = old[goes], new[goes], places[goes]
-        tried = remembered(_placed(d, old, new, places), known)
-        known = settle(tried, tolerance=tolerance)
-        failed = (known.breaks != tried.breaks) | (known.reset != tried.reset)[d.outlines.indices]
+        tried = _placed(d, old, new, places)
+        if keep_area:
+            tried = keep_areas(tried, tolerance=tolerance, divide=False)
+        found = settle(tried, tolerance=tolerance)
+        failed = (found.breaks != tried.breaks) | (found.reset != tried.reset)[d.outlines.indices]
         if not failed.any():
-            return known.coarse().points
+            return found.coarse().points
         # A piece in which something had to be done takes both its ends back.
         first, last = tried.pieces
         count = np.concatenate([[0], np.cumsum(failed)])
@@ -86,10 +88,11 @@ def _astray(d: Draft, entries: Ints, places: Points) -> Floats:
 
 
 def _placed(d: Draft, old: Ints, new: Ints, places: Points) -> Draft:
-    """Put breaks to other entries and places."""
+    """Put breaks to other entries and places; all pieces are to be tested again."""
     breaks, moved = d.breaks.copy(), d.moved.copy()
     breaks[old] = False
     moved[old] = 0
     breaks[new] = True
     moved[new] = places - d.dense[d.outlines.indices[new]]
-    return replace(d, breaks=breaks, moved=moved)
+    unknown = np.full(len(moved), -1)
+    return replace(d, breaks=breaks, moved=moved, measured=unknown, tested=unknown)

@@ -21,7 +21,7 @@ from img2tri.triangles.relaxing import ANNEAL, SMOOTH, climbed, relaxed
 from img2tri.triangles.repairing import repaired
 
 CLEAR = 0.66  # lattice nodes nearer to an outline or apex than this times the wanted length are dropped
-NUDGE, GOLDEN = 1e-7, 0.618  # of the pitch: how far loose points are put off, each the other way than the one before
+NUDGE, GOLDEN = 1e-7, 0.618  # of the shortest segment: how far loose points are put off, each the other way than the one before
 REPAIRS = 2  # rounds of repairing and triangulating anew, if there is something to repair
 
 
@@ -96,7 +96,7 @@ def band(network: Network, at_points: Floats, at_middles: Floats, sizes: Sizes, 
     fence = network.joined(lattice.positions(front), ends.reshape(-1, 2), right=labels[edges[:, 0]].astype(np.int64))
     loose = np.concatenate([near[len(walls) :], lattice.positions(between), fine])
     # Nodes of a lattice lie on common circles, over which exact predicates take long: a nudge, and they do not.
-    loose += NUDGE * lattice.pitch * np.exp(2j * np.pi * GOLDEN * np.arange(len(loose)))
+    loose += NUDGE * network.lengths.min() * np.exp(2j * np.pi * GOLDEN * np.arange(len(loose)))
     return Band(fence, len(network.segments), loose, depth, front)
 
 
