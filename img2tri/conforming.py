@@ -97,7 +97,7 @@ class Sizes:
     elements_across: float | None = None
     segments_per_turn: float | None = None
     shortest: float = 0.0
-    gradation: float = 0.15
+    gradation: float = 0.17
 
 
 def wanted_sizes(

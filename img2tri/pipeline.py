@@ -55,7 +55,7 @@ def mesh_image(
     outline: str = "smooth",
     corners: str = "auto",
     edge_length: EdgeLength | None = None,
-    gradation: float = 0.15,
+    gradation: float = 0.17,
     min_edge_length: float | str | None = None,
     boundary_edge_length: float | str | None = None,
     elements_across: float | None = None,

@@ -244,7 +244,8 @@ def test_at_a_checkerboard_only_tips_are_cut_off():
     labels = specimens.MASKS["touching corners inside"].repeat(3, 0).repeat(3, 1)
     mesh = mesh_image(labels, outline="pixel", edge_length=4)
     area = oracles.areas(mesh.vertices, mesh.triangles).sum()
-    assert area == pytest.approx(labels.sum() - 2 / 8, abs=0.15)
+    # A tip cut half a pixel from its corner has an area of a quarter.
+    assert labels.sum() - 2 * 0.25 <= area < labels.sum()
     assert oracles.mesh_topology(mesh.triangles) == (2, 0)
     sides = shapely.union_all(shapely.linestrings(oracles.pixel_sides(labels)))
     ends = mesh.vertices[np.unique(oracles.boundary(mesh.triangles))]

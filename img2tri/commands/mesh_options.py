@@ -50,7 +50,7 @@ def add_mesh_options(parser: ArgumentParser) -> None:
     add("--min-edge-length", metavar="L", help="outlines get no shorter edges for the sake of the next two options")
     add("--elements-across", type=number, metavar="N", help="at least so many edges across the thinnest places")
     add("--segments-per-turn", type=number, metavar="N", help="at least so many edges to a full turn of an outline")
-    add("--gradation", type=number, metavar="G", help="how much lengths may grow per unit of distance (default 0.15)")
+    add("--gradation", type=number, metavar="G", help="how much lengths may grow per unit of distance (default 0.17)")
     add("--min-angle", type=number, metavar="A", help="least angle of a triangle, 0 to 32 degrees (default 30)")
     add("--tolerance", metavar="L", help="greatest distance between outlines and mesh (default 0.5px)")
     add("--keep-area", action=BooleanOptionalAction, help="move vertices outwards on curved outlines, so that areas are kept, or leave "

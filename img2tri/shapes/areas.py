@@ -21,12 +21,14 @@ GREAT = 0.8  # of the greatest lens of a chain: those that get the breaks
 SMALL = 16  # pixels: the area of smaller regions is not looked after
 
 
-def keep_areas(d: Draft, *, tolerance: float, divide: bool = True) -> Draft:
+def keep_areas(d: Draft, *, tolerance: float, whole: bool = False) -> Draft:
     """Move breaks sideways so that the chords enclose what the outlines enclose, chain by chain.
 
     A chord on a curve cuts a lens off. Each break takes up half of the lenses beside it; what then is missing of a chain, since
     some breaks cannot move, is shared evenly by the others. No break ends farther from the outline than the tolerance. Where
-    that leaves a small region with too much or too little, breaks are added, to be moved the next time, unless not to `divide`.
+    that leaves a small region with too much or too little, breaks are added, to be moved the next time.
+
+    `whole` chains are shifted, all their breaks by the same, and no breaks are added: what lies well for its lenses stays so.
     """
     first, last = d.pieces
     chain, size = d.links.chain, len(d.links.rings)
@@ -36,7 +38,7 @@ def keep_areas(d: Draft, *, tolerance: float, divide: bool = True) -> Draft:
     lost = np.bincount(chain[first], lens, size).astype(np.float64)
 
     # Moving a break sideways by s sweeps s * width / 2.
-    step = area / width
+    step = np.zeros(len(on)) if whole else area / width
     share = np.bincount(on, width / 2, size).astype(np.float64)
     missing = lost - np.bincount(on, step * width / 2, size)
     step += np.divide(missing, share, out=np.zeros_like(share), where=share > 0)[on]
@@ -44,7 +46,7 @@ def keep_areas(d: Draft, *, tolerance: float, divide: bool = True) -> Draft:
     taken = ((moved - d.moved)[free.at] * free.right(d.moved).conj()).real
     lacking = np.abs(lost - np.bincount(on, taken * width / 2, size))
     breaks = d.breaks.copy()
-    if divide:
+    if not whole:
         breaks[_middles(d, first, last, np.abs(lens), lacking > AREA * _smaller_side(d))] = True
     return replace(d, breaks=breaks, moved=moved, measured=np.full(len(moved), -1), tested=np.full(len(moved), -1))
 

@@ -19,7 +19,7 @@ from img2tri.shapes.drafts import SAME, Draft
 from img2tri.shapes.leaning import Sideways
 from img2tri.shapes.unrolling import Points
 
-SLIDE = 0.3  # of the shorter piece beside a break: how far it may slide
+SLIDE = 0.15  # of the shorter piece beside a break: how far it may slide
 STRAIGHT = 35.0  # degrees: breaks at which the outline turns by more stay
 ROUNDS = 4  # how often breaks go back one by one; then all do
 
@@ -48,7 +48,7 @@ def slid(d: Draft, points: Floats, *, tolerance: float, keep_area: bool = True) 
         old, new, places = old[goes], new[goes], places[goes]
         tried = _placed(d, old, new, places)
         if keep_area:
-            tried = keep_areas(tried, tolerance=tolerance, divide=False)
+            tried = keep_areas(tried, tolerance=tolerance, whole=True)
         found = settle(tried, tolerance=tolerance)
         failed = (found.breaks != tried.breaks) | (found.reset != tried.reset)[d.outlines.indices]
         if not failed.any():

@@ -17,12 +17,11 @@ from img2tri.triangles.front import apexes, keepers, spread
 from img2tri.triangles.grading import Sizes, finer, nearest_of, pairs
 from img2tri.triangles.lattice import Complex, Depth, Labels, Lattice
 from img2tri.triangles.network import Network
-from img2tri.triangles.relaxing import ANNEAL, SMOOTH, climbed, relaxed
+from img2tri.triangles.relaxing import SAFE, SMOOTH, climbed, relaxed, smallest_tangents
 from img2tri.triangles.repairing import repaired
 
 CLEAR = 0.66  # lattice nodes nearer to an outline or apex than this times the wanted length are dropped
 NUDGE, GOLDEN = 1e-7, 0.618  # of the shortest segment: how far loose points are put off, each the other way than the one before
-REPAIRS = 2  # rounds of repairing and triangulating anew, if there is something to repair
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,21 +131,19 @@ def _clear(near: Complex, points: Complex, wanted: Floats) -> Bools:
 
 def settled(band: Band, slide: Slide | None = None) -> tuple[Complex, Ints, Ints]:
     """Triangulate the band and move its loose points until triangles are good; return vertices, triangles, regions."""
-    walls, loose, size = band.fence.points, band.loose, len(band.fence.points)
-    rails = None if slide is None else band.fence.rails(slide.room)
-    for _ in range(REPAIRS):
-        vertices, free, triangles, codes = _joined(band.fence, walls, loose)
-        vertices = relaxed(vertices, triangles, free, SMOOTH, rails)
-        added, stays = repaired(vertices, triangles, free)
-        walls, loose = vertices[:size], np.concatenate([vertices[size:][stays[size:]], added])
-        if stays.all():
-            break
+    fence, size = band.fence, len(band.fence.points)
+    vertices, free, triangles, codes = _joined(fence, fence.points, band.loose)
+    vertices = relaxed(vertices, triangles, free, SMOOTH, None if slide is None else fence.rails(slide.room))
+    added, stays = repaired(vertices, triangles, free)
     if slide is not None:
-        places = slide.settled(pairs(walls[: len(slide.room)]))
-        walls = np.concatenate([places[:, 0] + 1j * places[:, 1], walls[len(places) :]])
-    vertices, free, triangles, codes = _joined(band.fence, walls, loose)
-    vertices = relaxed(vertices, triangles, free, ANNEAL)
-    return climbed(vertices, triangles, free), triangles, codes
+        places = slide.settled(pairs(vertices[: len(slide.room)]))
+        vertices[: len(places)] = places[:, 0] + 1j * places[:, 1]
+    if not stays.all() or (smallest_tangents(vertices, triangles) < SAFE).any():
+        loose = np.concatenate([vertices[size:][stays[size:]], added])
+        vertices, free, triangles, codes = _joined(fence, vertices[:size], loose)
+    # Only the worst angle is worth a climb: what else it spoils is smoothed once more, and that angle stays.
+    vertices = climbed(relaxed(vertices, triangles, free, SMOOTH), triangles, free)
+    return relaxed(vertices, triangles, free, SMOOTH), triangles, codes
 
 
 def _joined(fence: Network, walls: Complex, loose: Complex) -> tuple[Complex, Bools, Ints, Ints]:

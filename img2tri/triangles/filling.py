@@ -38,7 +38,7 @@ def fill(
     *,
     edge_length: float,
     min_angle: float = 30.0,
-    gradation: float = 0.15,
+    gradation: float = 0.17,
     size: Floats | Callable[[Floats], Floats] | None = None,
     slide: Slide | None = None,
     seed: int = 0,

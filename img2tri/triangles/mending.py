@@ -15,7 +15,7 @@ from img2tri.triangles.delaunay import refine
 from img2tri.triangles.grading import pairs
 from img2tri.triangles.lattice import Complex
 from img2tri.triangles.network import Network
-from img2tri.triangles.relaxing import ANNEAL, relaxed, smallest_angles, touched
+from img2tri.triangles.relaxing import SMOOTH, relaxed, smallest_angles, touched
 
 RINGS = (3, 3, 6, 12, 24, 1_000_000)  # how far patches reach around bad triangles, then around edges of the rim that were split
 SHORTEST = 0.05  # no edge becomes shorter than about this times the shortest segment in the patch
@@ -48,7 +48,7 @@ def mended(
     places = net.vertices[:, 0] + 1j * net.vertices[:, 1]
     free = np.ones(len(places), bool)
     free[net.segments] = False
-    places = relaxed(places, net.triangles, free, ANNEAL)
+    places = relaxed(places, net.triangles, free, SMOOTH)
     numbers = np.concatenate([inside, len(vertices) + np.arange(len(places) - len(inside))])
     all_places = np.concatenate([vertices, places[len(inside) :]])
     all_places[inside] = places[: len(inside)]

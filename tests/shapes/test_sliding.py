@@ -128,7 +128,7 @@ def test_a_break_is_not_taken_off_its_outline():
 
 def test_breaks_that_would_leave_a_piece_too_long_for_the_tolerance_go_back():
     d = settled(MAPS["disc"], 11.0)  # chords already as long as the tolerance allows
-    share = np.where(np.arange(len(d.coarse().points)) % 2, 1.0, -1.0)
+    share = np.where(np.arange(len(d.coarse().points)) % 2, 2.0, -2.0)
     wanted = asked(d, share)
     found = slid(d, wanted, tolerance=0.5, keep_area=False)
     assert not np.allclose(found, wanted, rtol=0, atol=1e-3)
