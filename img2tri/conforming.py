@@ -32,7 +32,7 @@ from img2tri.shapes.sizing import by_curvature, by_pieces, by_thickness, limit_g
 from img2tri.shapes.sliding import rooms, slid
 from img2tri.shapes.unrolling import Points
 
-AREA_ROUNDS, AREA_ERROR = 2, 1e-4  # how often breaks are moved for the sake of areas, and the relative error that is left
+AREA_ERROR = 1e-4  # relative, of a region: above it breaks are moved for its sake
 USUAL_TRIANGLES = 2000  # what the default edge length aims at
 RESPACINGS = 2  # how often outlines are spaced anew around places that need shorter pieces
 MOST_TRIANGLES = 100_000_000  # some 2 GB of mesh, and several times that on the way
@@ -168,9 +168,7 @@ def conform(
     tell("spacing" if count < CONFETTI else f"spacing {count:,} outlines; min_area would drop specks", 0.3)
     twins = find_twins(outlines, links, periodic)
     coarse = _spaced(outlines, links, twins, sizes, tolerance, corners == "keep", keep_area)
-    for _ in range(AREA_ROUNDS if keep_area else 0):
-        if area_error(coarse) <= AREA_ERROR:
-            break
+    if keep_area and area_error(coarse) > AREA_ERROR:
         coarse = twins.settle(keep_areas(coarse, tolerance=tolerance), tolerance=tolerance)
     yielding, began = tolerance, 0
     for attempt in range(ATTEMPTS):

@@ -34,7 +34,7 @@ FLATTEST = 0.05  # qualities below this weigh as much as this, else one flat tri
 Schedule = Sequence[tuple[int, float, int]]
 """Rows of (doublings, damping, steps): the power of the weights is 2 to the number of doublings."""
 SMOOTH: Schedule = ((1, 1.0, 5),)
-CLIMB: Schedule = ((5, 0.3, 4), (6, 0.2, 6), (7, 0.1, 15))
+CLIMB: Schedule = ((5, 0.3, 4), (6, 0.2, 4), (7, 0.1, 7))
 SLIDING = 0.8  # of its step is what a vertex on a rail takes
 TARGET = 44.0  # degrees: angles above this are not worth a climb
 WORST = 2.0  # degrees: a climb goes where angles are within this of the worst
