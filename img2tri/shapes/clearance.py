@@ -14,6 +14,7 @@ from img2tri.shapes.drafts import Draft
 from img2tri.shapes.unrolling import Points, cross
 
 GAP = 0.25  # px, the least distance kept between pieces, over their bulges
+FEW = 2**17  # pairs: rather looked at one by one than found in trees
 SHARP = np.cos(np.radians(50.0))  # pieces that meet at less than this angle are too sharp
 
 
@@ -60,14 +61,30 @@ def crowded_pieces(d: Draft, first: Ints, last: Ints, fresh: Bools) -> Bools:
 
 
 def _within(a: Points, b: Points, reach: Floats, fresh: Bools) -> tuple[Ints, Ints]:
-    """Pairs of segments whose boxes, each widened by its `reach`, meet, at least one of them fresh; each pair once.
+    """Pairs of segments whose boxes, each widened by its `reach`, meet, at least one of them fresh; each pair once."""
+    middle, wide, high = (a + b) / 2, np.abs((b - a).real) / 2 + reach, np.abs((b - a).imag) / 2 + reach
+    few = np.count_nonzero(fresh) * len(fresh) <= FEW
+    i, j = (_beside if few else _near)(middle, np.maximum(wide, high), fresh)
+    away = middle[i] - middle[j]
+    meet = (fresh[i] | fresh[j]) & (np.abs(away.real) <= wide[i] + wide[j]) & (np.abs(away.imag) <= high[i] + high[j])
+    return i[meet], j[meet]
 
-    Squares around the middles of segments are looked up in trees, one for each class of sizes, so that a few long segments do not
-    make all others look far.
-    """
+
+def _beside(middle: Points, half: Floats, fresh: Bools) -> tuple[Ints, Ints]:
+    """Pairs of squares around their middles that meet, one of them fresh, each pair once: found by looking at all."""
+    chosen = np.flatnonzero(fresh)
+    room = half[chosen, None] + half
+    meet = (np.abs(middle.real[chosen, None] - middle.real) <= room) & (np.abs(middle.imag[chosen, None] - middle.imag) <= room)
+    i, j = np.nonzero(meet)
+    i = chosen[i]
+    once = (i < j) | ~fresh[j]
+    return i[once], j[once]
+
+
+def _near(middle: Points, half: Floats, fresh: Bools) -> tuple[Ints, Ints]:
+    """Pairs of squares that may meet, each once, found in trees: one for each class of sizes, as a few large ones make all look far."""
     from scipy.spatial import cKDTree
 
-    middle, half = (a + b) / 2, np.maximum(np.abs((b - a).real), np.abs((b - a).imag)) / 2 + reach
     places, chosen = np.stack([middle.real, middle.imag], axis=1), np.flatnonzero(fresh)
     size = 4.0 ** np.ceil(np.log2(half) / 2)
     # A tree for each class; where few segments are fresh, of those only that are anywhere near them.
@@ -85,11 +102,7 @@ def _within(a: Points, b: Points, reach: Floats, fresh: Bools) -> tuple[Ints, In
             pairs = tree.sparse_distance_matrix(beside, one + other, p=np.inf, output_type="ndarray")
             found.append(np.stack([segments[pairs["i"]], others[pairs["j"]]]))
     i, j = np.concatenate(found, axis=1)
-    # Boxes are narrower than squares.
-    away, room = middle[i] - middle[j], reach[i] + reach[j]
-    wide, high = (np.abs(part[i]) + np.abs(part[j]) for part in ((b - a).real / 2, (b - a).imag / 2))
-    meet = (fresh[i] | fresh[j]) & (np.abs(away.real) <= wide + room) & (np.abs(away.imag) <= high + room)
-    return i[meet], j[meet]
+    return i, j
 
 
 def _around(middles: Points, reach: float, chosen: Bools) -> Bools:

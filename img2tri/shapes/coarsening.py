@@ -131,12 +131,17 @@ def _moved(d: Draft, moved: Points, doubtful: Ints) -> bool:
 
 def _return_to_points(d: Draft, tolerance: float) -> bool:
     """Let breaks that were moved along their chain go back, where their own point lies too far from the pieces they end."""
+    astray = (np.abs(d.moved) > tolerance) & ~d.reset[d.outlines.indices]
     first, last = d.pieces
+    ends = astray[first] | astray[last]
+    first, last = first[ends], last[ends]
+    if not len(first):
+        return False
     z, place = d.dense[d.outlines.indices], d.places
     distance = np.full(len(z), np.inf)
     for end in (first, last):
         distance[end] = np.minimum(distance[end], to_segment(z[end], place[first], place[last]))
-    back = (np.abs(d.moved) > tolerance) & (distance > tolerance) & np.isfinite(distance) & ~d.reset[d.outlines.indices]
+    back = astray & (distance > tolerance) & np.isfinite(distance)
     d.moved[back] = 0
     stale = first[back[first] | back[last]]
     d.measured[stale] = d.tested[stale] = -1

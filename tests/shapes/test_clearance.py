@@ -11,6 +11,7 @@ import shapely
 import specimens
 
 from img2tri.records import Frame
+from img2tri.shapes import clearance
 from img2tri.shapes.clearance import GAP, _around, crowded_pieces, sharp_pieces, to_segment
 from img2tri.shapes.cracks import find_cracks
 from img2tri.shapes.drafts import draft
@@ -123,3 +124,20 @@ def test_no_place_within_reach_is_left_out_and_none_far_away_is_looked_at(reach)
         found = _around(places, reach, chosen)
         assert found[away <= reach].all()
         assert not found[away > 2 * np.sqrt(2) * reach].any()
+
+
+@pytest.mark.parametrize("count", [0, 1, 7, 300])
+def test_few_pairs_are_found_as_many_are(monkeypatch, count):
+    rng = np.random.default_rng(count)
+    a = rng.uniform(0, 60, 300) + 1j * rng.uniform(0, 60, 300)
+    b = a + rng.exponential(3, 300) * np.exp(2j * np.pi * rng.uniform(size=300))
+    reach, fresh = rng.uniform(0, 1, 300), np.arange(300) < count
+    found = []
+    for few in (0, 10**9):
+        monkeypatch.setattr(clearance, "FEW", few)
+        pairs = [tuple(sorted(pair)) for pair in np.transpose(clearance._within(a, b, reach, fresh)).tolist()]
+        assert len(set(pairs)) == len(pairs)
+        found.append(set(pairs))
+    assert found[0] == found[1]
+    assert bool(found[0]) == (count > 0)
+    assert all(fresh[i] or fresh[j] for i, j in found[0])
