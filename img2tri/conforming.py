@@ -161,7 +161,7 @@ def conform(
     from img2tri.triangles.band import Slide
     from img2tri.triangles.delaunay import NetworkError
     from img2tri.triangles.filling import fill
-    from img2tri.triangles.relaxing import smallest_angles
+    from img2tri.triangles.relaxing import narrow
 
     tell = progress or (lambda *_: None)
     count = len(outlines.left)
@@ -189,10 +189,10 @@ def conform(
                 if chains is filled:
                     break
             failure = None
-            narrow = smallest_angles(vertices[:, 0] + 1j * vertices[:, 1], triangles) < min_angle - 1e-9
-            if not narrow.any() or attempt == ATTEMPTS - 1:
+            sharp = narrow(vertices.view(np.complex128)[:, 0], triangles, min_angle - 1e-9)
+            if not sharp.any() or attempt == ATTEMPTS - 1:
                 break
-            doubtful = vertices[triangles[narrow]].reshape(-1, 2)
+            doubtful = vertices[triangles[sharp]].reshape(-1, 2)
         except NetworkError as error:
             failure = error
             if attempt == ATTEMPTS - 1:

@@ -15,7 +15,7 @@ from img2tri.triangles.delaunay import refine
 from img2tri.triangles.grading import pairs
 from img2tri.triangles.lattice import Complex
 from img2tri.triangles.network import Network
-from img2tri.triangles.relaxing import SMOOTH, relaxed, smallest_angles, touched
+from img2tri.triangles.relaxing import SMOOTH, narrow, relaxed, touched
 
 RINGS = (3, 3, 6, 12, 24, 1_000_000)  # how far patches reach around bad triangles, then around edges of the rim that were split
 SHORTEST = 0.05  # no edge becomes shorter than about this times the shortest segment in the patch
@@ -28,7 +28,7 @@ def mended(
 
     Only the first `own` segments of the network may be split. None if that is not enough.
     """
-    bad = smallest_angles(vertices, triangles) < min_angle
+    bad = narrow(vertices, triangles, min_angle)
     if not bad.any():
         return vertices, triangles, codes
     patch, cause = np.zeros(len(triangles), bool), bad

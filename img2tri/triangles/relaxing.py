@@ -80,6 +80,11 @@ def smallest_angles(vertices: Complex, triangles: Ints) -> Floats:
     return angles
 
 
+def narrow(vertices: Complex, triangles: Ints, min_angle: float) -> Bools:
+    """Tell which triangles have an angle of less than so many degrees, or are clockwise."""
+    return np.asarray(smallest_tangents(vertices, triangles) < np.tan(np.radians(min_angle)))
+
+
 @dataclass(frozen=True, eq=False)
 class Rails:
     """Vertices that may slide along straight lines.

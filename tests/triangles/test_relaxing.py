@@ -8,7 +8,7 @@ import pytest
 from scipy.spatial import Delaunay
 
 from img2tri.triangles.grading import pairs
-from img2tri.triangles.relaxing import CLIMB, DEFECT, SMOOTH, Rails, climbed, relaxed, shapes, smallest_angles
+from img2tri.triangles.relaxing import CLIMB, DEFECT, SMOOTH, Rails, climbed, narrow, relaxed, shapes, smallest_angles
 from img2tri.triangles.repairing import repaired, surplus
 
 TURN = np.exp(1j * np.pi / 3)
@@ -69,6 +69,9 @@ def test_smallest_angles():
     z, triangles, _ = rough(1)
     assert smallest_angles(z, triangles) == pytest.approx(oracles.angles(pairs(z), triangles).min(axis=1), abs=1e-6)
     assert (smallest_angles(z, triangles[:, ::-1]) < 0).all()
+    for degrees in (0, 12.3, 45):
+        assert (narrow(z, triangles, degrees) == (smallest_angles(z, triangles) < degrees)).all()
+        assert narrow(z, triangles[:, ::-1], degrees).all()
 
 
 @pytest.mark.parametrize("seed", range(8))
