@@ -18,7 +18,7 @@ from img2tri.shapes.drafts import draft
 from img2tri.shapes.leaning import Sideways, fitted
 from img2tri.shapes.placing import place
 from img2tri.shapes.polygons import region_polygons
-from img2tri.shapes.sliding import SLIDE, rooms, slid
+from img2tri.shapes.sliding import SLIDE, _entries, _nearest, rooms, slid
 
 MAPS = {
     "disc": specimens.disc(100, 40.3, (50.1, 49.8)),
@@ -75,6 +75,26 @@ def test_room_is_a_share_of_the_shorter_piece_and_nodes_have_none(name):
     begins = coarse.indices[coarse.starts[:-1]]
     assert (room[begins] == 0).all()
     assert (room > 0).any() == bool(len(Sideways(d).at) > len(np.unique(begins)))
+
+
+def test_breaks_at_which_an_outline_turns_sharply_stay():
+    octagon, dodecagon = (settled(specimens.disc(60, 20.3), spacing, tolerance=3.0) for spacing in (20.0, 2 * np.pi * 20.3 / 12))
+    assert (len(rooms(octagon)), len(rooms(dodecagon))) == (8, 12)
+    assert (rooms(octagon) == 0).all()
+    assert (rooms(dodecagon) > 0).sum() == 11
+
+
+@pytest.mark.parametrize("name", ["disc", "blob", "polycrystal"])
+def test_breaks_become_those_of_the_dense_points_they_slide_to(name):
+    d = settled(MAPS[name], 7.0)
+    share = np.random.default_rng(0).uniform(-1, 1, len(d.coarse().points))
+    entries, z = _entries(d), d.dense[d.outlines.indices]
+    goes = rooms(d) > 0
+    places = (asked(d, share) @ [1, 1j])[goes]
+    found = _nearest(d, entries[goes], places)
+    around = np.clip(found[:, None] + np.arange(-4, 5), 0, len(z) - 1)
+    assert (np.abs(places - z[found]) <= np.abs(places[:, None] - z[around]).min(axis=1) + 0.1).all()
+    assert (np.diff(found[np.argsort(entries[goes])]) > 0).all()
 
 
 @pytest.mark.parametrize("shortest", [3.0, 6.0, 7.5])
