@@ -166,3 +166,13 @@ def test_what_grows_no_faster_is_left_as_it_is(steepness):
     lowest = np.unravel_index(asked.argmin(), asked.shape)
     limit = asked.min() + 0.3 * np.hypot(x - x[lowest], y - y[lowest])
     assert (field.grid <= 1.12 * limit).all()
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_growth_is_limited_along_diagonals_too(sign):
+    y, x = np.mgrid[:60, :80] + 0.5
+    for slope in (0.2, 0.25):  # 0.28 and 0.35 along the diagonal
+        asked = 30 + slope * (x + sign * y)
+        _, field = length_field(asked, Frame((60, 80), upward=False), asked, gradation=0.3)
+        assert (field.grid == asked).all() == (slope == 0.2)
+        assert (field.grid <= asked + 1e-12).all()
