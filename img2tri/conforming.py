@@ -11,14 +11,14 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from img2tri.errors import ParameterError, finite
 from img2tri.raster.zones import Zones
-from img2tri.records import Floats, Frame, Made, Outlines
+from img2tri.records import Floats, Frame, Ints, Made, Outlines
 from img2tri.shapes.areas import area_error, keep_areas
 from img2tri.shapes.coarsening import refine
 from img2tri.shapes.cracks import find_cracks
@@ -31,6 +31,10 @@ from img2tri.shapes.placing import place, place_on_sides
 from img2tri.shapes.sizing import by_curvature, by_pieces, by_thickness, limit_growth
 from img2tri.shapes.sliding import rooms, slid
 from img2tri.shapes.unrolling import Points
+
+if TYPE_CHECKING:
+    from img2tri.triangles.band import Slide
+    from img2tri.triangles.delaunay import NetworkError
 
 AREA_ERROR = 1e-4  # relative, of a region: above it breaks are moved for its sake
 USUAL_TRIANGLES = 2000  # what the default edge length aims at
@@ -157,11 +161,8 @@ def conform(
     progress: Callable[[str, float], object] | None = None,
 ) -> Made:
     """Mesh all regions of an image, given its dense outlines; lengths in px."""
-    from img2tri.scattering import scattered
     from img2tri.triangles.band import Slide
     from img2tri.triangles.delaunay import NetworkError
-    from img2tri.triangles.filling import fill
-    from img2tri.triangles.relaxing import narrow
 
     tell = progress or (lambda *_: None)
     count = len(outlines.left)
@@ -173,48 +174,61 @@ def conform(
     yielding, began = tolerance, 0
     for attempt in range(ATTEMPTS):
         tell("triangles", 1 - 0.6 * 0.7**attempt)
-        chains = coarse.coarse()
         slide = Slide(rooms(coarse, shortest=sizes.shortest), partial(slid, coarse, tolerance=tolerance, keep_area=keep_area))
-        try:
-            for _ in range(FILLINGS):
-                segments, left, right = chains.segments
-                if interior == "poisson":
-                    vertices, triangles, regions = scattered(chains, sizes.longest, sizes.field, min_angle=min_angle, seed=seed)
-                else:
-                    vertices, triangles, regions = fill(
-                        chains.points, segments, left, right, edge_length=sizes.longest, min_angle=min_angle,
-                        gradation=sizes.gradation, size=sizes.field, slide=slide, seed=seed,
-                    )  # fmt: skip
-                filled, chains = chains, twins.divided(chains, vertices)
-                if chains is filled:
-                    break
-            failure = None
-            sharp = narrow(vertices.view(np.complex128)[:, 0], triangles, min_angle - 1e-9)
-            if not sharp.any() or attempt == ATTEMPTS - 1:
-                break
-            doubtful = vertices[triangles[sharp]].reshape(-1, 2)
-        except NetworkError as error:
-            failure = error
-            if attempt == ATTEMPTS - 1:
-                raise
-            doubtful = chains.points[segments[error.segments if len(error.segments) else slice(None)]].reshape(-1, 2)
+        mesh, chains, doubtful = _filled(coarse, twins, sizes, slide if interior == "lattice" else None, min_angle=min_angle, seed=seed)
+        if not len(doubtful) or attempt + 1 == ATTEMPTS:
+            break
         before = coarse
         coarse = refine(coarse, doubtful[:, 0] + 1j * doubtful[:, 1], within=1.0 + 0.5 * (attempt - began), tolerance=yielding)
         coarse = twins.settle(coarse, tolerance=tolerance)
         same = (coarse.breaks == before.breaks).all() and (coarse.moved == before.moved).all()
         if same and yielding >= WAY_BACK:
-            if failure is not None:
-                raise failure
             break
         if same or attempt + 1 == ATTEMPTS // 2:
             # Rather too far from the outline than too sharp; the report tells.
             yielding, began = max(tolerance, WAY_BACK), attempt + 1
-    twins.check(chains, vertices)
+    if isinstance(mesh, NetworkError):
+        raise mesh
+    twins.check(chains, mesh[0])
     counted = {"rounds": attempt + 1, "reset": int(coarse.reset.sum())}
     if sizes.shortest:
         first, last = coarse.pieces
         counted["below_min_edge_length"] = int((abs(coarse.places[last] - coarse.places[first]) < sizes.shortest).sum())
-    return Made(vertices, triangles, regions, counted)
+    return Made(*mesh, counted)
+
+
+def _filled(
+    coarse: Draft, twins: Twins, sizes: Sizes, slide: Slide | None, *, min_angle: float, seed: int
+) -> tuple[tuple[Floats, Ints, Ints] | NetworkError, Outlines, Floats]:
+    """Fill coarse outlines, with a lattice if their points may slide, else with scattered points.
+
+    Return vertices, triangles and regions, or why there are none; the outlines, twins divided alike; and places (k, 2) where these are
+    at fault: at the corners of triangles with too small an angle, or where no mesh could be made.
+    """
+    from img2tri.scattering import scattered
+    from img2tri.triangles.delaunay import NetworkError
+    from img2tri.triangles.filling import fill
+    from img2tri.triangles.relaxing import narrow
+
+    chains = coarse.coarse()
+    try:
+        for _ in range(FILLINGS):
+            segments, left, right = chains.segments
+            if slide is None:
+                mesh = scattered(chains, sizes.longest, sizes.field, min_angle=min_angle, seed=seed)
+            else:
+                mesh = fill(
+                    chains.points, segments, left, right, edge_length=sizes.longest, min_angle=min_angle,
+                    gradation=sizes.gradation, size=sizes.field, slide=slide, seed=seed,
+                )  # fmt: skip
+            filled, chains = chains, twins.divided(chains, mesh[0])
+            if chains is filled:
+                break
+    except NetworkError as error:
+        return error, chains, chains.points[segments[error.segments if len(error.segments) else slice(None)]].reshape(-1, 2)
+    vertices, triangles, _ = mesh
+    sharp = narrow(vertices.view(np.complex128)[:, 0], triangles, min_angle - 1e-9)
+    return mesh, chains, vertices[triangles[sharp]].reshape(-1, 2)
 
 
 def _spaced(outlines: Outlines, links: Links, twins: Twins, sizes: Sizes, tolerance: float, keep_corners: bool, keep_area: bool) -> Draft:
