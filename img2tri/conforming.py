@@ -174,8 +174,10 @@ def conform(
     yielding, began = tolerance, 0
     for attempt in range(ATTEMPTS):
         tell("triangles", 1 - 0.6 * 0.7**attempt)
-        slide = Slide(rooms(coarse, shortest=sizes.shortest), partial(slid, coarse, tolerance=tolerance, keep_area=keep_area))
-        mesh, chains, doubtful = _filled(coarse, twins, sizes, slide if interior == "lattice" else None, min_angle=min_angle, seed=seed)
+        slide = None
+        if interior == "lattice":
+            slide = Slide(rooms(coarse, shortest=sizes.shortest), partial(slid, coarse, tolerance=tolerance, keep_area=keep_area))
+        mesh, chains, doubtful = _filled(coarse, twins, sizes, slide, min_angle=min_angle, seed=seed)
         if not len(doubtful) or attempt + 1 == ATTEMPTS:
             break
         before = coarse

@@ -63,11 +63,17 @@ class Draft:
         """(k,) where the entries lie, breaks where they were moved to."""
         return self.dense[self.outlines.indices] + self.moved
 
+    @property
+    def entries(self) -> Ints:
+        """(p,) the first entry of each point of the coarse outlines, in the order these have: that of the dense points."""
+        at = np.flatnonzero(self.breaks)
+        return at[np.unique(self.outlines.indices[at], return_index=True)[1]]
+
     def coarse(self) -> Outlines:
         """Return the outlines made of the breaks only."""
-        o, at = self.outlines, np.flatnonzero(self.breaks)
-        _, first, index = np.unique(o.indices[at], return_index=True, return_inverse=True)
-        place = self.places[at[first]]
+        o, at, entries = self.outlines, np.flatnonzero(self.breaks), self.entries
+        index = np.searchsorted(o.indices[entries], o.indices[at])
+        place = self.places[entries]
         starts = np.searchsorted(at, o.starts)
         return Outlines(np.stack([place.real, place.imag], axis=1), index, starts, o.left, o.right, o.labels)
 

@@ -21,7 +21,7 @@ from img2tri.records import Floats, Frame
 
 CELLS = 2**20  # of the grid at most
 FIRST = 2**12  # cells, in which a function is asked first, to see how short its lengths are
-RESOLUTION, ENOUGH = 1.0, 1.2  # cells should be this part of the shortest length; those larger by this factor are small enough
+ENOUGH = 1.2  # cells should be as small as the shortest length; those larger by this factor are small enough
 SCALE = 1.1  # between the lengths whose reach is looked at
 
 EdgeLength = float | str | Mapping[int, float | str] | Callable[[Floats], Floats] | NDArray[Any]
@@ -106,7 +106,7 @@ def _asked(name: str, wanted: Callable[[Floats], Floats], frame: Frame) -> tuple
         lengths = np.asarray(wanted(frame.world(np.stack([x.ravel(), y.ravel()], axis=1))), np.float64)
         if lengths.shape != (ny * nx,):
             raise ParameterError(f"{name}: expected the function to return ({ny * nx},) lengths, found shape {lengths.shape}")
-        least = max(1.0, RESOLUTION * float(_checked(name, lengths).min()) / frame.pixel)
+        least = max(1.0, float(_checked(name, lengths).min()) / frame.pixel)
         if cell <= ENOUGH * _cells(frame, least)[2]:
             return lengths.reshape(ny, nx), cell
 

@@ -34,12 +34,12 @@ def rooms(d: Draft, *, shortest: float = 0.0) -> Floats:
     result = np.zeros(len(d.moved))
     result[free.at] = straight * np.maximum(0, np.minimum(SLIDE * length, (length - max(shortest, SHORT)) / 2))
     result[d.outlines.starts[:-1]] = 0  # what a ring begins and ends with stays
-    return np.asarray(result[_entries(d)])
+    return np.asarray(result[d.entries])
 
 
 def slid(d: Draft, points: Floats, *, tolerance: float, keep_area: bool = True) -> Floats:
     """Return where the points (n, 2) of the coarse outline may be, which the mesh wants at these places; areas are kept if asked for."""
-    entries, places = _entries(d), points[:, 0] + 1j * points[:, 1]
+    entries, places = d.entries, points[:, 0] + 1j * points[:, 1]
     goes = np.abs(places - d.places[entries]) > SAME
     old, places = entries[goes], places[goes]
     new = _nearest(d, old, places)
@@ -61,12 +61,6 @@ def slid(d: Draft, points: Floats, *, tolerance: float, keep_area: bool = True) 
         ends[first[back]] = ends[last[back]] = True
         goes = ~ends[new]
     return d.coarse().points
-
-
-def _entries(d: Draft) -> Ints:
-    """Entry of each point of the coarse outline, in the order of `Draft.coarse`."""
-    at = np.flatnonzero(d.breaks)
-    return at[np.unique(d.outlines.indices[at], return_index=True)[1]]
 
 
 def _nearest(d: Draft, old: Ints, places: Points) -> Ints:

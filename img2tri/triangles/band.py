@@ -17,10 +17,9 @@ from img2tri.triangles.front import apexes, keepers, spread
 from img2tri.triangles.grading import Sizes, finer, nearest_of, pairs
 from img2tri.triangles.lattice import Complex, Depth, Labels, Lattice
 from img2tri.triangles.network import Network
-from img2tri.triangles.relaxing import SMOOTH, climbed, narrow, relaxed
+from img2tri.triangles.relaxing import SAFE, SMOOTH, climbed, narrow, relaxed
 from img2tri.triangles.repairing import repaired
 
-SAFE = 30.0  # degrees: where all angles are larger, triangles do for points that were moved a little
 CLEAR = 0.66  # lattice nodes nearer to an outline or apex than this times the wanted length are dropped
 NUDGE, GOLDEN = 1e-7, 0.618  # of the shortest segment: how far loose points are put off, each the other way than the one before
 
@@ -139,6 +138,7 @@ def settled(band: Band, slide: Slide | None = None) -> tuple[Complex, Ints, Ints
     if slide is not None:
         places = slide.settled(pairs(vertices[: len(slide.room)]))
         vertices[: len(places)] = places[:, 0] + 1j * places[:, 1]
+    # With nothing to repair the triangles may stay, unless settling spoilt them.
     if not stays.all() or narrow(vertices, triangles, SAFE).any():
         loose = np.concatenate([vertices[size:][stays[size:]], added])
         vertices, free, triangles, codes = _joined(fence, vertices[:size], loose)

@@ -17,6 +17,7 @@ array operations for all vertices. Vertices on outlines take of their moves what
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -28,7 +29,7 @@ from img2tri.triangles.lattice import Complex, blocks
 
 TURN = np.exp(2j * np.pi / 3)
 DEFECT = np.array([1, TURN, TURN**2])
-SAFE = 3**-0.5  # tangent of 30 degrees
+SAFE = 30.0  # degrees: no angle is made smaller than this
 FLATTEST = 0.05  # qualities below this weigh as much as this, else one flat triangle stops its neighbours
 
 Schedule = Sequence[tuple[int, float, int]]
@@ -164,7 +165,7 @@ def climbed(vertices: Complex, triangles: Ints, free: Bools, target: float = TAR
 def _guarded(before: Complex, after: Complex, triangles: Ints) -> Complex:
     """Shorten the moves of vertices of triangles that became bad: whose angle fell below 30 degrees or below the worst before."""
     tangents = smallest_tangents(before, triangles)
-    least = np.minimum(tangents, max(SAFE, tangents.min(initial=np.inf))) - 1e-12
+    least = np.minimum(tangents, max(math.tan(math.radians(SAFE)), tangents.min(initial=np.inf))) - 1e-12
     moved, part = after.copy(), np.ones(len(before))
     worse = np.flatnonzero(smallest_tangents(after, triangles) < least)
     while len(worse):

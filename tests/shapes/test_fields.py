@@ -8,7 +8,7 @@ from scipy.spatial.distance import cdist
 
 from img2tri.errors import ParameterError
 from img2tri.records import Frame
-from img2tri.shapes.fields import CELLS, ENOUGH, FIRST, SCALE, length_field
+from img2tri.shapes.fields import CELLS, FIRST, SCALE, length_field
 
 LABELS = np.zeros((30, 40), int)
 LABELS[5:12, 5:30], LABELS[20:, 33:] = 1, 2
@@ -84,10 +84,10 @@ def test_one_length_needs_no_field():
 
 
 def test_a_large_image_gets_coarser_cells():
-    _, field = length_field(lambda places: 0.1 + places[:, 0], Frame((3000, 2000)), LABELS, gradation=10)
-    assert 1 <= field.cell / np.sqrt(6e6 / CELLS) <= ENOUGH
-    assert field.grid.size < 1.01 * CELLS
-    assert field(np.array([[1000.0, 1500.0]])) == pytest.approx(1000.1, rel=1e-6)
+    _, field = length_field(lambda places: np.where(places[:, 0] < 100, 2, 5 + places[:, 0]), Frame((3000, 2000)), LABELS, gradation=10)
+    assert field.cell == pytest.approx(np.sqrt(6e6 / CELLS))
+    assert 0.99 * CELLS < field.grid.size < 1.01 * CELLS
+    assert field(np.array([[1000.0, 1500.0]])) == pytest.approx(1005, rel=1e-6)
 
 
 @pytest.mark.parametrize("upward", [True, False])

@@ -18,7 +18,7 @@ from img2tri.shapes.drafts import draft
 from img2tri.shapes.leaning import Sideways, fitted
 from img2tri.shapes.placing import place
 from img2tri.shapes.polygons import region_polygons
-from img2tri.shapes.sliding import SLIDE, _entries, _nearest, rooms, slid
+from img2tri.shapes.sliding import SLIDE, _nearest, rooms, slid
 
 MAPS = {
     "disc": specimens.disc(100, 40.3, (50.1, 49.8)),
@@ -88,7 +88,7 @@ def test_breaks_at_which_an_outline_turns_sharply_stay():
 def test_breaks_become_those_of_the_dense_points_they_slide_to(name):
     d = settled(MAPS[name], 7.0)
     share = np.random.default_rng(0).uniform(-1, 1, len(d.coarse().points))
-    entries, z = _entries(d), d.dense[d.outlines.indices]
+    entries, z = d.entries, d.dense[d.outlines.indices]
     goes = rooms(d) > 0
     places = (asked(d, share) @ [1, 1j])[goes]
     found = _nearest(d, entries[goes], places)

@@ -100,15 +100,16 @@ def test_the_wanted_length_grows_from_its_sources():
     assert found == pytest.approx(exact)
 
 
+@pytest.mark.parametrize("gradation", [0.17, 0.3])
 @pytest.mark.parametrize("name", ["ring", "grains", "speck"])
-def test_edges_are_as_long_as_wanted(name):
+def test_edges_are_as_long_as_wanted(name, gradation):
     given, edge_length = NETWORKS[name]
-    vertices, triangles, _ = fill(*given, edge_length=edge_length)
+    vertices, triangles, _ = fill(*given, edge_length=edge_length, gradation=gradation)
     z = vertices[:, 0] + 1j * vertices[:, 1]
     edges, _ = oracles.edge_counts(triangles)
     start, stop = given[0][given[1][:, 0]], given[0][given[1][:, 1]]
     middles, lengths = (start + stop) / 2, np.linalg.norm(stop - start, axis=1)
-    sizes = Sizes.near(middles[:, 0] + 1j * middles[:, 1], lengths, edge_length, 0.2)
+    sizes = Sizes.near(middles[:, 0] + 1j * middles[:, 1], lengths, edge_length, gradation)
     ratio = np.abs(z[edges[:, 0]] - z[edges[:, 1]]) / sizes.at(z[edges].mean(axis=1))
     assert 0.9 < np.median(ratio) < 1.1
     assert ((ratio > 0.6) & (ratio < 1.5)).mean() > 0.95

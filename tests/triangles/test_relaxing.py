@@ -12,6 +12,8 @@ from img2tri.triangles.relaxing import CLIMB, DEFECT, SMOOTH, Rails, climbed, na
 from img2tri.triangles.repairing import repaired, surplus
 
 TURN = np.exp(1j * np.pi / 3)
+FEW = ((1, 1.0, 3),)
+ANNEAL = ((1, 1.0, 2), (1, 0.8, 3), (2, 0.6, 3), (3, 0.5, 4), (4, 0.3, 6))
 
 
 def rough(seed, n=300):
@@ -75,7 +77,7 @@ def test_smallest_angles():
 
 
 @pytest.mark.parametrize("seed", range(8))
-@pytest.mark.parametrize("schedule", [SMOOTH, CLIMB, ((7, 1.0, 5),), ((1, 1.9, 20),)])
+@pytest.mark.parametrize("schedule", [SMOOTH, CLIMB, FEW, ANNEAL, ((7, 1.0, 5),), ((1, 1.9, 20),)])
 def test_relaxing_never_lowers_the_worst_angle(seed, schedule):
     z, triangles, free = rough(seed)
     before = z.copy()
@@ -91,6 +93,24 @@ def test_relaxing_makes_triangles_better(seed):
     for z, triangles, free, *_ in (rough(seed), railed(seed, 0)):
         before, after = (shapes(vertices, triangles)[1].mean() for vertices in (z, relaxed(z, triangles, free, SMOOTH)))
         assert 1 - after < 0.96 * (1 - before)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_rough_meshes_get_better_in_few_steps_and_their_worst_angles_by_growing_powers(seed):
+    z, triangles, free = rough(seed)
+    smooth = relaxed(z, triangles, free, FEW)
+    assert shapes(smooth, triangles)[1].mean() > shapes(z, triangles)[1].mean() + 0.02
+    annealed = relaxed(smooth, triangles, free, ANNEAL)
+    assert np.percentile(smallest_angles(annealed, triangles), 5) > np.percentile(smallest_angles(smooth, triangles), 5)
+
+
+def test_climbing_in_a_rough_mesh():
+    z, triangles, free = rough(5)
+    z = relaxed(relaxed(z, triangles, free, FEW), triangles, free, ANNEAL)
+    lifted = climbed(z, triangles, free)
+    assert smallest_angles(lifted, triangles).min() > smallest_angles(z, triangles).min()
+    assert (lifted == z).sum() > len(z) / 3
+    assert (climbed(z, triangles, free, target=0.0) == z).all()
 
 
 @pytest.mark.parametrize("seed", range(4))
