@@ -7,18 +7,19 @@ from dataclasses import replace
 import numpy as np
 import oracles
 import pytest
+import shapely
 import specimens
 from benchmarks.shapes import blob
 
 from img2tri.records import Frame
 from img2tri.shapes.areas import keep_areas
-from img2tri.shapes.coarsening import settle
+from img2tri.shapes.coarsening import SHORT, settle
 from img2tri.shapes.cracks import find_cracks
 from img2tri.shapes.drafts import draft
 from img2tri.shapes.leaning import Sideways, fitted
 from img2tri.shapes.placing import place
 from img2tri.shapes.polygons import region_polygons
-from img2tri.shapes.sliding import SLIDE, _nearest, rooms, slid
+from img2tri.shapes.sliding import SLIDE, _astray, _nearest, rooms, slid
 
 MAPS = {
     "disc": specimens.disc(100, 40.3, (50.1, 49.8)),
@@ -105,6 +106,12 @@ def test_pieces_do_not_get_shorter_than_asked_for(shortest):
     lengths = np.hypot(*(coarse.points[stop] - coarse.points[start]).T)
     assert (lengths - room[start] - room[stop] >= shortest - 1e-9).all()
     assert (room.max() < rooms(d).max()) == (shortest > 0.4 * lengths.min())
+    some = room > 0
+    shorter = np.full(len(room), np.inf)
+    np.minimum.at(shorter, start, lengths)
+    np.minimum.at(shorter, stop, lengths)
+    assert room[some] == pytest.approx(np.minimum(SLIDE * shorter, (shorter - shortest) / 2)[some])
+    assert np.array_equal(rooms(d), rooms(d, shortest=SHORT))
 
 
 @pytest.mark.parametrize("name", MAPS)
@@ -132,6 +139,22 @@ def test_most_breaks_of_smooth_outlines_get_where_they_are_wanted(name):
     found = slid(d, wanted, tolerance=0.5, keep_area=False)
     there = np.hypot(*(found - wanted).T) < 1e-6
     assert there[rooms(d) > 0].mean() > 0.9
+
+
+@pytest.mark.parametrize("off", [0.0, 0.3, 0.8])
+@pytest.mark.parametrize("name", ["disc", "ring", "blob"])
+def test_how_far_a_place_is_off_its_outline(name, off):
+    d = settled(MAPS[name], 7.0)
+    rng = np.random.default_rng(0)
+    dense = d.outlines.points[d.outlines.segments[0]]
+    which = d.entries[rooms(d) > 0]
+    step = off * np.exp(2j * np.pi * rng.uniform(size=len(which)))
+    places = asked(d, 0.2) @ [1, 1j]
+    places = places[rooms(d) > 0] + step
+    found = _astray(d, _nearest(d, which, places), places)
+    exact = shapely.distance(shapely.multilinestrings(shapely.linestrings(dense)), shapely.points(places.real, places.imag))
+    assert (found >= exact - 1e-9).all()
+    assert (found <= exact + 0.1).all()
 
 
 def test_a_break_is_not_taken_off_its_outline():
