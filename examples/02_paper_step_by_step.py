@@ -13,25 +13,25 @@ from pathlib import Path
 
 import numpy as np
 
-from img2tri.paper import CLOSENESS, structured_mesh, unstructured_mesh
-from img2tri.raster.binarizing import binarize
-from img2tri.raster.gray import to_gray
-from img2tri.raster.reading import read
-from img2tri.records import Frame
-from img2tri.shapes.contours import contour_polygon, external_contours
-from img2tri.shapes.grid import mask_filter, structured_grid
-from img2tri.shapes.poisson import poisson_disk
-from img2tri.shapes.spreading import spread_evenly
-from img2tri.triangles.quality import assess
-from img2tri.triangles.smoothing import uniform
-from img2tri.triangles.topology import adjacency
-from img2tri.triangles.unconstrained import centroid_filter, delaunay
-from img2tri.views.figure import draw
+from img2tri.paper.boundary_points import spread_evenly
+from img2tri.paper.contours import contour_polygon, external_contours
+from img2tri.paper.delaunay import centroid_filter, delaunay
+from img2tri.paper.grid import mask_filter, structured_grid
+from img2tri.paper.poisson_disk import poisson_disk
+from img2tri.paper.recipes import CLOSENESS, structured_mesh, unstructured_mesh
+from img2tri.raster.io.reading import read
+from img2tri.raster.labels.gray import to_gray
+from img2tri.raster.labels.thresholds import binarize
+from img2tri.triangles.tools.quality import assess
+from img2tri.triangles.tools.smoothing import uniform
+from img2tri.triangles.tools.topology import adjacency
+from img2tri.types import Frame
+from img2tri.views.figures.plot import draw
 
 DATA = Path(__file__).resolve().parent.parent / "data"
-THRESHOLD = 240     # the paper's T
-STEP = 10           # the paper's grid, in pixels
-EDGE = 10           # px, for the unstructured mesh: as fine as the grid
+THRESHOLD = 240  # the paper's T
+STEP = 10  # the paper's grid, in pixels
+EDGE = 10  # px, for the unstructured mesh: as fine as the grid
 
 
 def main(out: str | Path = "out") -> dict[str, float]:

@@ -27,17 +27,17 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from img2tri.certificate.report import Report
     from img2tri.errors import FileError, ImageError, Img2triError, MeshError, ParameterError
     from img2tri.mesh import TriangleMesh
     from img2tri.pipeline import mesh_image
-    from img2tri.report import Report
 
 __version__ = "0.1.0"
 
 _PLACES = {
     "mesh_image": "pipeline",
     "TriangleMesh": "mesh",
-    "Report": "report",
+    "Report": "certificate.report",
     "Img2triError": "errors",
     "ParameterError": "errors",
     "ImageError": "errors",

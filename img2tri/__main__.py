@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-from img2tri.cli import main
+from img2tri.cli.program import main
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 from img2tri import __version__
 from img2tri.errors import MeshError, ParameterError, choice
-from img2tri.records import Floats, Frame, Ints, Origin
-from img2tri.triangles.checks import check_mesh, check_regions
+from img2tri.triangles.tools.mesh_checks import check_mesh, check_regions
+from img2tri.types import Floats, Frame, Ints, Origin
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -22,11 +22,11 @@ if TYPE_CHECKING:
     from skfem import MeshTri
     from trimesh import Scene, Trimesh
 
-    from img2tri.report import Report
-    from img2tri.second_order import SecondOrder
-    from img2tri.triangles.quality import Quality
-    from img2tri.views.cells import Cells
-    from img2tri.views.sets import Sets
+    from img2tri.certificate.report import Report
+    from img2tri.recipes.second_order import SecondOrder
+    from img2tri.triangles.tools.quality import Quality
+    from img2tri.views.objects.cells import Cells
+    from img2tri.views.objects.named_sets import Sets
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -75,14 +75,14 @@ class TriangleMesh:
         return f"TriangleMesh: {text}, {x0:g} <= x <= {x1:g}, {y0:g} <= y <= {y1:g}"
 
     def _repr_html_(self) -> str:
-        from img2tri.views.notebook import html
+        from img2tri.views.figures.notebook import html
 
         return html(self.vertices, self.triangles, self.regions, upward=self.frame.upward)
 
     @cached_property
     def report(self) -> Report:
         """The certificate: what this mesh keeps of what was promised, measured on its triangles when first asked for."""
-        from img2tri.report import certify
+        from img2tri.certificate.report import certify
 
         if self.origin is None:
             raise MeshError("report: expected a mesh made by mesh_image, found one made from arrays; there is no image to judge it by")
@@ -90,7 +90,7 @@ class TriangleMesh:
 
     def quality(self) -> Quality:
         """Measure the triangles: angles, areas, edge lengths, ratios, by their Verdict names, and q = 2 r / R."""
-        from img2tri.triangles.quality import assess
+        from img2tri.triangles.tools.quality import assess
 
         return assess(self.vertices, self.triangles)
 
@@ -113,7 +113,7 @@ class TriangleMesh:
 
     def second_order(self) -> SecondOrder:
         """Return quadratic triangles, their sides curved along the outlines: corners, and a node in the middle of each side."""
-        from img2tri.second_order import second_order
+        from img2tri.recipes.second_order import second_order
 
         return second_order(self.vertices, self.triangles, self.regions, self.frame, self.origin)
 
@@ -139,7 +139,7 @@ class TriangleMesh:
         tolerance, guard
             How far a vertex of the boundary may move, as a length. Whether no triangle may be turned over, nor the worst angle fall.
         """
-        from img2tri.triangles.smoothing import cotangent, uniform
+        from img2tri.triangles.tools.smoothing import cotangent, uniform
 
         choice("method", method, ("uniform", "cotangent"))
         within = self.frame.length("tolerance", tolerance)
@@ -161,10 +161,10 @@ class TriangleMesh:
         neighbours share their walls.
         """
         if split:
-            from img2tri.views.bodies import to_scene
+            from img2tri.views.objects.bodies import to_scene
 
             return to_scene(self.vertices, self.triangles, self.regions, height=height, names=self.names, **self._data())
-        from img2tri.views.trimesh_objects import to_trimesh
+        from img2tri.views.objects.to_trimesh import to_trimesh
 
         return to_trimesh(self.vertices, self.triangles, self.regions, height=height, **self._data())
 
@@ -179,24 +179,24 @@ class TriangleMesh:
         if height is not None and order == 2 and not solid:
             raise ParameterError("order: expected 1 for the surface of a solid, found 2; solid=True gives quadratic wedges")
         if solid or order != 1 or layers != 1:
-            from img2tri.views.wedges import to_elements
+            from img2tri.views.objects.wedges import to_elements
 
             if solid and height is None:
                 raise ParameterError("height: expected a length with solid=True, found None")
             return to_elements(self.vertices, self.triangles, self.regions, height=height, layers=layers, order=order, **self._data())
-        from img2tri.views.pyvista_objects import to_pyvista
+        from img2tri.views.objects.to_pyvista import to_pyvista
 
         return to_pyvista(self.vertices, self.triangles, self.regions, height=height, **self._data())
 
     def sets(self) -> Sets:
         """Name the parts: regions, sides of the frame, outer boundary, holes, interfaces ``A__B``."""
-        from img2tri.views.sets import named_sets
+        from img2tri.views.objects.named_sets import named_sets
 
         return named_sets(self.vertices, self.triangles, self.regions, bounds=self._bounds(), names=self.names)
 
     def to_skfem(self) -> MeshTri:
         """Return a ``skfem.MeshTri`` with regions as subdomains and named edges as boundaries; needs ``img2tri[fem]``."""
-        from img2tri.views.skfem_objects import to_skfem
+        from img2tri.views.objects.to_skfem import to_skfem
 
         return to_skfem(self.vertices, self.triangles, self.sets())
 
@@ -225,9 +225,9 @@ class TriangleMesh:
         version, deck, plane
             Of .msh, "4.1" or "2.2"; of .inp, whether an analysis that runs is written, in plane "stress" or "strain".
         """
-        from img2tri.views import vectors
-        from img2tri.views.export import EXPORTS, export
-        from img2tri.views.files import save
+        from img2tri.views.formats import svg_dxf_geojson as vectors
+        from img2tri.views.formats.save_load import save
+        from img2tri.views.formats.solvers.solver_files import EXPORTS, export
 
         suffix = Path(path).suffix.lower()
         if suffix in vectors.FORMATS:
@@ -254,8 +254,8 @@ class TriangleMesh:
         colour_by
             "quality", "region", or None for red edges as in the paper's figures.
         """
-        from img2tri.raster.reading import read
-        from img2tri.views.figure import draw
+        from img2tri.raster.io.reading import read
+        from img2tri.views.figures.plot import draw
 
         values = None if image is None else read(image).values
         kept = self.origin.settings.get("crop") if self.origin and values is not None else None
@@ -268,8 +268,8 @@ class TriangleMesh:
 
     def _cells(self, height: float | None, layers: int, order: int) -> Cells:
         """Return the elements solvers compute on, with their named sets."""
-        from img2tri.views.cells import flat_cells, solid_cells
-        from img2tri.views.wedges import wedges
+        from img2tri.views.objects.cells import flat_cells, solid_cells
+        from img2tri.views.objects.wedges import wedges
 
         if order not in (1, 2):
             raise ParameterError(f"order: expected 1 or 2, found {order!r}")
@@ -289,7 +289,7 @@ class TriangleMesh:
 
     def _data(self) -> dict[str, Any]:
         """Collect what objects and files carry along: the height of the plane, q of each triangle, how the mesh was made."""
-        from img2tri.triangles.quality import measure
+        from img2tri.triangles.tools.quality import measure
 
         about: dict[str, Any] = {"version": __version__, "names": {str(label): name for label, name in self.names.items()}}
         if self.origin is not None:

@@ -9,21 +9,21 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, TypedDict, Unpack
 
-from img2tri.conforming import conform, trace_outlines, wanted_sizes
 from img2tri.errors import ImageError, ParameterError, choice, finite, flag, integer, shown
 from img2tri.mesh import TriangleMesh
-from img2tri.paper import paper_mesh
-from img2tri.raster.binarizing import Level
-from img2tri.raster.cropping import crop as cropped
-from img2tri.raster.hashing import image_hash
-from img2tri.raster.labelling import label, picked
-from img2tri.raster.reading import read
-from img2tri.raster.zones import cleaned, find_zones
-from img2tri.records import Origin, checked_names
-from img2tri.shapes.fields import EdgeLength
-from img2tri.shapes.links import pixel_areas, pixels_beside
+from img2tri.paper.recipes import paper_mesh
+from img2tri.raster.io.fingerprint import image_hash
+from img2tri.raster.io.reading import read
+from img2tri.raster.labels.cropping import crop as cropped
+from img2tri.raster.labels.label_maps import label, picked
+from img2tri.raster.labels.segmentation import cleaned, find_zones
+from img2tri.raster.labels.thresholds import Level
+from img2tri.recipes.conforming import conform, trace_outlines, wanted_sizes
 from img2tri.shapes.periodic import check_periodic
 from img2tri.shapes.polygons import enclosed_areas
+from img2tri.shapes.sizes.size_field import EdgeLength
+from img2tri.shapes.trace.dual_edges import pixel_areas, pixels_beside
+from img2tri.types import Origin, checked_names
 
 RECIPES = ("conforming", "structured", "unstructured")
 SMOOTHINGS = ("none", "uniform", "cotangent")
@@ -34,7 +34,7 @@ PAPER_SMOOTHING = {"structured": "none", "unstructured": "uniform"}
 
 
 class PaperOptions(TypedDict, total=False):
-    """Options of the paper's recipes only, see `img2tri.paper`; all follow from `edge_length` if left out."""
+    """Options of the paper's recipes only, see `img2tri.paper.recipes`; all follow from `edge_length` if left out."""
 
     step: float | str
     n_boundary_points: int

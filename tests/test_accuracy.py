@@ -9,10 +9,10 @@ import shapely
 import specimens
 
 from img2tri import mesh_image
-from img2tri.records import Frame
-from img2tri.shapes.cracks import find_cracks
-from img2tri.shapes.placing import place
+from img2tri.shapes.place.placement import place
 from img2tri.shapes.polygons import region_polygons
+from img2tri.shapes.trace.crack_edges import find_cracks
+from img2tri.types import Frame
 
 
 def dense_points(labels, **options):

@@ -10,7 +10,7 @@ import pytest
 import shapely
 from scipy.spatial import KDTree
 
-from img2tri.triangles.filling import fill
+from img2tri.triangles.generate.filling import fill
 
 PATH = Path(__file__).parent.parent / "examples" / "08_effective_conductivity.py"
 

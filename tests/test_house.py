@@ -21,33 +21,27 @@ LONGEST = 300  # lines in a file
 # Lowest first; the modules of one row do not import each other.
 ORDER = [
     {"errors"},
-    {"records"},
+    {"types"},
     set(ROOMS),
-    {"scattering"},
-    {"conforming", "paper", "judging"},
-    {"report", "second_order"},
+    {"paper"},
+    {"recipes", "certificate"},
     {"mesh"},
     {"pipeline"},
-    {"commands"},
     {"cli"},
     {"__main__"},
 ]
-# The command line has rows of its own.
-COMMANDS = [{"mesh_options", "streams"}, {"options", "jobs"}, {"making"}, {"batch", "telling"}]
+FOLDERS = {*ROOMS, "paper", "recipes", "certificate", "cli"}  # their files may import each other
 # numpy is at home everywhere.
 LIBRARIES = {
     "raster": {"cv2", "PIL", "tifffile", "pydicom", "nibabel", "scipy"},  # scipy joins runs of pixels to components
-    "shapes": {"shapely", "scipy", "cv2"},  # cv2 traces the paper's contours
+    "shapes": {"shapely", "scipy", "cv2"},  # cv2 measures distances to the places where lengths are given
     "triangles": {"scipy", "igl", "pythoncdt", "shapely"},
     "views": {"skfem", "trimesh", "pyvista", "vtkmodules", "matplotlib"},
-    "conforming": set(),
-    "paper": {"shapely"},
-    "scattering": {"scipy"},
-    "judging": {"shapely", "scipy"},
-    "report": set(),
-    "second_order": {"scipy"},
+    "paper": {"cv2", "pythoncdt", "scipy", "shapely"},  # cv2 traces its contours
+    "recipes": {"scipy"},
+    "certificate": {"shapely", "scipy"},
     "mesh": {"skfem", "shapely", "trimesh", "pyvista", "matplotlib"},  # for types only
-    "commands": {"rich"},
+    "cli": {"rich"},
 }
 HEAVY = {"cv2", "PIL", "tifffile", "scipy", "shapely", "igl", "pythoncdt", "trimesh", "pyvista", "vtkmodules", "matplotlib", "rich"}
 ALLOWED = {"pyproject.toml", "README.md", "LICENSE", "img2tri", "tests", "examples", "data"}
@@ -105,17 +99,8 @@ def test_a_file_imports_only_from_lower_rows_and_its_own_room(path):
     if name == "__init__":
         return  # it loads public names when they are asked for
     row = next(i for i, names in enumerate(ORDER) if name in names)
-    allowed = set().union(*ORDER[:row]) | {"__version__"} | ({name} if name in (*ROOMS, "commands") else set())
+    allowed = set().union(*ORDER[:row]) | {"__version__"} | ({name} if name in FOLDERS else set())
     assert own(imported(ast.walk(tree(path)))) <= allowed
-
-
-def test_the_parts_of_the_command_line_import_only_from_lower_rows():
-    parts = {path.stem: path for path in FILES if house_name(path) == "commands" and path.stem != "__init__"}
-    assert set(parts) == set().union(*COMMANDS)
-    for row, names in enumerate(COMMANDS):
-        for name in names:
-            used = {module.split(".")[2] for module in imported(ast.walk(tree(parts[name]))) if module.startswith("img2tri.commands.")}
-            assert used <= set().union(*COMMANDS[:row]), name
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(PACKAGE)))
@@ -153,7 +138,7 @@ def test_public_names_are_there_and_no_others():
 @pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(PACKAGE)))
 def test_only_one_part_of_the_command_line_prints(path):
     calls = {node.func.id for node in ast.walk(tree(path)) if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)}
-    assert "print" not in calls or path == PACKAGE / "commands" / "telling.py"
+    assert "print" not in calls or path == PACKAGE / "cli" / "printing.py"
     assert not calls & {"breakpoint", "input", "exit", "quit"}
     assert "logging" not in {name.partition(".")[0] for name in imported(ast.walk(tree(path)))}
 
@@ -180,7 +165,7 @@ def test_the_top_level_holds_only_what_belongs_there():
 
 @in_checkout
 def test_the_rooms_of_the_tests_mirror_the_package():
-    assert {path.name for path in (ROOT / "tests").iterdir() if path.is_dir() and path.name != "__pycache__"} == {*ROOMS, "benchmarks"}
+    assert {path.name for path in (ROOT / "tests").iterdir() if path.is_dir() and path.name != "__pycache__"} == {*FOLDERS, "benchmarks"}
 
 
 def _run(tool, *arguments):
@@ -194,6 +179,7 @@ def _run(tool, *arguments):
 @in_checkout
 def test_ruff_finds_nothing():
     _run("ruff", "check", ".")
+    _run("ruff", "format", "--check", ".")
 
 
 @in_checkout

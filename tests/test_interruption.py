@@ -15,8 +15,8 @@ import specimens
 
 from img2tri import mesh_image
 from img2tri.errors import FileError
-from img2tri.views.files import FORMATS, load
-from img2tri.views.storing import store, writable
+from img2tri.views.formats.atomic_write import store, writable
+from img2tri.views.formats.save_load import FORMATS, load
 
 resource = pytest.importorskip("resource")
 OLD = b"what was there before"
@@ -65,7 +65,7 @@ def test_a_full_disk_leaves_the_older_files_whole(tmp_path):
 STOPPED = """
 import os, sys, time
 from pathlib import Path
-from img2tri.views import storing
+from img2tri.views.formats import atomic_write as storing
 wait = os.fsync
 def slow(number):
     wait(number)

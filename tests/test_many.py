@@ -19,9 +19,8 @@ import specimens
 from PIL import Image
 
 from img2tri import mesh_image
-from img2tri.cli import main
-from img2tri.commands import batch, telling
-from img2tri.commands.jobs import Job
+from img2tri.cli import batch, main, printing
+from img2tri.cli.jobs import Job
 
 IMAGES = [specimens.disc(30 + k, 10.0 + k / 2).astype(bool) for k in range(4)]
 CASES = [(image, {"recipe": "conforming"}) for image in IMAGES] + [(image, {"recipe": "unstructured", "threshold": 0}) for image in IMAGES]
@@ -60,7 +59,7 @@ def test_threads_save_to_one_name(tmp_path):
     meshes = [mesh_image(image) for image in IMAGES]
     with concurrent.futures.ThreadPoolExecutor(8) as pool:
         list(pool.map(lambda mesh: mesh.save(tmp_path / "mesh.ply"), meshes * 8))
-    from img2tri.views.files import load
+    from img2tri.views.formats.save_load import load
 
     assert len(load(tmp_path / "mesh.ply")[1]) in {len(mesh.triangles) for mesh in meshes}
     assert len(list(tmp_path.iterdir())) == 1
@@ -217,7 +216,7 @@ class _Terminal(io.StringIO):
 @pytest.mark.parametrize("workers", ["1", "2"])
 def test_one_bar_for_all_images(workers, images, monkeypatch, capsys):
     names = images("a.png", "bad.png", "b.png")
-    monkeypatch.setattr(telling, "PATIENCE", 0)
+    monkeypatch.setattr(printing, "PATIENCE", 0)
     monkeypatch.setattr(sys, "stderr", _Terminal())
     monkeypatch.setenv("TERM", "xterm")
     assert main(["mesh", *names, "--out-dir", "out", "--workers", workers]) == 2

@@ -12,9 +12,9 @@ import shapely
 import specimens
 
 from img2tri import FileError, MeshError, ParameterError, TriangleMesh, __version__, mesh_image
-from img2tri.records import Frame
-from img2tri.views.files import load
-from img2tri.views.formats.reading import read_msh
+from img2tri.types import Frame
+from img2tri.views.formats.save_load import load
+from img2tri.views.formats.solvers.read_msh_bdf import read_msh
 
 HOLED = specimens.disc(50, 22) - specimens.disc(50, 9, (20.5, 26.0))
 GRAINS = specimens.polycrystal(40, 5)

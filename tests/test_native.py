@@ -103,7 +103,7 @@ def use(name):
 def load(case):
     """Load a file of these bytes, and judge what is in it."""
     from img2tri import TriangleMesh
-    from img2tri.views.files import load as load_file
+    from img2tri.views.formats.save_load import load as load_file
 
     suffix, data = case
     with tempfile.TemporaryDirectory() as folder:

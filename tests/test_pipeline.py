@@ -18,7 +18,7 @@ from PIL import Image
 
 import img2tri
 from img2tri import FileError, ImageError, Img2triError, ParameterError, mesh_image
-from img2tri.paper import structured_mesh
+from img2tri.paper.recipes import structured_mesh
 from img2tri.pipeline import PAPER_THRESHOLD, RECIPES, SMOOTHINGS, PaperOptions
 
 DATA = Path(__file__).parents[1] / "data"

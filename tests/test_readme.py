@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from img2tri.cli import main
+from img2tri.cli.program import main
 
 ROOT = Path(__file__).parent.parent
 README = ROOT / "README.md"

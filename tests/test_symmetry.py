@@ -9,10 +9,10 @@ import specimens
 from scipy.spatial import cKDTree
 
 from img2tri import mesh_image
-from img2tri.records import Frame
-from img2tri.shapes.cracks import find_cracks
-from img2tri.shapes.placing import place, place_on_sides
+from img2tri.shapes.place.placement import place, place_on_sides
 from img2tri.shapes.polygons import region_polygons
+from img2tri.shapes.trace.crack_edges import find_cracks
+from img2tri.types import Frame
 
 SHAPES = specimens.ALL | {
     "blob": specimens.disc(60, 21.3, (28.1, 31.7)),

@@ -22,10 +22,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from img2tri.errors import ImageError, MeshError, ParameterError, shown
-from img2tri.records import Bools, Floats, Ints, Outlines
-from img2tri.shapes.coarsening import settle
-from img2tri.shapes.drafts import Draft
-from img2tri.shapes.links import Links
+from img2tri.shapes.simplify.simplification import Draft
+from img2tri.shapes.simplify.tolerance import settle
+from img2tri.shapes.trace.dual_edges import Links
+from img2tri.types import Bools, Floats, Ints, Outlines
 
 DIRECTIONS = {None: (), "x": (0,), "y": (1,), "xy": (0, 1)}  # which coordinate tells a side from the one opposite to it
 SIDES = {"x": (1, "column"), "y": (0, "row")}
@@ -103,7 +103,7 @@ class Twins:
         return replace(outlines, points=points)
 
     def settle(self, d: Draft, *, tolerance: float) -> Draft:
-        """Settle outlines, see `img2tri.shapes.coarsening.settle`, with twins divided alike."""
+        """Settle outlines, see `img2tri.shapes.simplify.tolerance.settle`, with twins divided alike."""
         rounds = 0
         while True:
             d = settle(self._matched(d, both=rounds >= PICKS), tolerance=tolerance)

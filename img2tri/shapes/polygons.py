@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from img2tri.records import Floats, Ints, Outlines
-from img2tri.shapes.chains import walk
+from img2tri.shapes.trace.chains import walk
+from img2tri.types import Floats, Ints, Outlines
 
 if TYPE_CHECKING:
     from shapely import MultiPolygon, Polygon

@@ -15,10 +15,10 @@ import pytest
 from benchmarks import listing
 from benchmarks.shapes import blob
 
-from img2tri.paper import CLOSENESS, paper_mesh, unstructured_mesh
-from img2tri.records import Frame
-from img2tri.shapes.contours import contour_polygon, external_contours
-from img2tri.shapes.poisson import poisson_disk
+from img2tri.paper.contours import contour_polygon, external_contours
+from img2tri.paper.poisson_disk import poisson_disk
+from img2tri.paper.recipes import CLOSENESS, paper_mesh, unstructured_mesh
+from img2tri.types import Frame
 
 pytestmark = pytest.mark.benchmark
 EDGE = 8

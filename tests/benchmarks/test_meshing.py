@@ -60,9 +60,7 @@ def fixed_edges(mesh):
 def inserted(points, edges):
     import pythoncdt
 
-    triangulation = pythoncdt.Triangulation(
-        pythoncdt.VertexInsertionOrder.AUTO, pythoncdt.IntersectingConstraintEdges.NOT_ALLOWED, 0.0
-    )
+    triangulation = pythoncdt.Triangulation(pythoncdt.VertexInsertionOrder.AUTO, pythoncdt.IntersectingConstraintEdges.NOT_ALLOWED, 0.0)
     triangulation.insert_vertices(np.ascontiguousarray(points))
     triangulation.insert_edges(np.ascontiguousarray(edges, np.uint32))
     return triangulation

@@ -8,11 +8,11 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from img2tri.records import Frame
-from img2tri.shapes.cracks import find_cracks
-from img2tri.shapes.drafts import draft
 from img2tri.shapes.periodic import find_twins
-from img2tri.shapes.placing import place
+from img2tri.shapes.place.placement import place
+from img2tri.shapes.simplify.simplification import draft
+from img2tri.shapes.trace.crack_edges import find_cracks
+from img2tri.types import Frame
 
 LABELS = np.ones((40, 44), int)
 LABELS[11:25], LABELS[25:] = 2, 3

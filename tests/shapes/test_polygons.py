@@ -11,10 +11,10 @@ import strategies
 from hypothesis import given
 from strategies import QUICK
 
-from img2tri.records import Frame
-from img2tri.shapes.cracks import find_cracks
-from img2tri.shapes.links import lay_out
 from img2tri.shapes.polygons import enclosed_areas, polygons, region_polygons, rings
+from img2tri.shapes.trace.crack_edges import find_cracks
+from img2tri.shapes.trace.dual_edges import lay_out
+from img2tri.types import Frame
 
 
 def outlines_of(labels, background=0, connectivity=4):

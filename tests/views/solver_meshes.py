@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from views.plates import cells
 
-from img2tri.views.cells import flat_cells, solid_cells
-from img2tri.views.wedges import quadratic, wedges
+from img2tri.views.objects.cells import flat_cells, solid_cells
+from img2tri.views.objects.wedges import quadratic, wedges
 
 KINDS = ("triangle", "triangle6", "wedge", "wedge15")
 HEIGHT, LAYERS = 1.25, 2

@@ -1,4 +1,4 @@
-"""The formats of solvers, one module each: `img2tri.views.cells.Cells` -> the bytes of a file.
+"""The formats of solvers, one module each: `img2tri.views.objects.cells.Cells` -> the bytes of a file.
 
     msh       Gmsh, and what reads its files
     inp       Abaqus and CalculiX

@@ -1,0 +1,179 @@
+"""The certificate: what a finished mesh keeps of what was promised, in numbers.
+
+In: the finished mesh and its `Origin`. Out: a `Report`. Nothing is taken over from the making of the mesh: distances, areas,
+topology and angles are measured on its triangles, and compared with the outlines and the pixels of the image.
+
+Lengths in a report are world units, angles degrees, areas world units squared.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from img2tri.certificate import measures as judging
+from img2tri.certificate.measures import Curves
+from img2tri.triangles.tools.quality import measure
+from img2tri.triangles.tools.topology import curve_edges
+from img2tri.types import Floats, Frame, Ints, Origin
+
+PLACES = 20  # listed at most
+
+
+@dataclass(frozen=True)
+class Report:
+    """What a mesh keeps of what was promised.
+
+    Attributes
+    ----------
+    recipe, settings, counted
+        How the mesh was made: all options, what was chosen, what was counted on the way.
+    n_vertices, n_triangles
+        Counts.
+    hausdorff, hausdorff_at, tolerance
+        Two-sided distance between the outlines and the boundary and interface edges of the mesh, where, and what it may be.
+    areas
+        For each label the area in the mesh and in the image, and the relative error.
+    displaced
+        Labels whose triangles lie elsewhere than their pixels.
+    topology
+        For each label (components, holes) as found in the mesh and as expected from the image.
+    unknown_labels
+        Labels of the mesh that the image does not have.
+    neighbours_missing, neighbours_extra
+        Pairs of labels that touch in the image but not in the mesh, and the other way round.
+    wrong_pixels, wrong_pixels_at
+        Number of pixel centres beside the outlines that lie in a wrong region, farther than the tolerance from its edge; the
+        first of them.
+    inverted, degenerate, nonmanifold_edges, pinched_vertices, duplicate_vertices, unused_vertices
+        Number of defects; 0 in a valid mesh.
+    smallest_angle, smallest_angle_at
+        The worst angle and where it is.
+    min_angle, narrow, narrow_at
+        The least angle promised, the number of triangles with a smaller one, and places of the first of them.
+    warnings
+        One line for each promise that is not kept, with its place.
+    """
+
+    recipe: str
+    settings: dict[str, Any]
+    counted: dict[str, Any]
+    n_vertices: int
+    n_triangles: int
+    hausdorff: float
+    hausdorff_at: tuple[float, float]
+    tolerance: float | None
+    areas: dict[int, dict[str, float]]
+    displaced: list[int]
+    topology: dict[int, dict[str, tuple[int, int]]]
+    unknown_labels: list[int]
+    neighbours_missing: list[tuple[int, int]]
+    neighbours_extra: list[tuple[int, int]]
+    wrong_pixels: int
+    wrong_pixels_at: list[tuple[float, float]]
+    inverted: int
+    degenerate: int
+    nonmanifold_edges: int
+    pinched_vertices: int
+    duplicate_vertices: int
+    unused_vertices: int
+    smallest_angle: float
+    smallest_angle_at: tuple[float, float]
+    min_angle: float | None
+    narrow: int
+    narrow_at: list[tuple[float, float]]
+    warnings: list[str]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the report as plain data."""
+        return dataclasses.asdict(self)
+
+    def to_json(self, indent: int | None = 2) -> str:
+        """Return the report as JSON."""
+        return json.dumps(self.to_dict(), indent=indent, default=_plain)
+
+    @property
+    def kept(self) -> bool:
+        """Whether every promise is kept."""
+        return not self.warnings
+
+
+def certify(vertices: Floats, triangles: Ints, regions: Ints, frame: Frame, origin: Origin) -> Report:
+    """Judge a mesh by the image it was made from.
+
+    Parameters
+    ----------
+    vertices, triangles, regions
+        The mesh: (n, 2) float64 in world coordinates, (m, 3) int64, (m,) int64 labels of the image.
+    frame, origin
+        Where the image lies, and what the mesh is to be judged by.
+    """
+    plane, outlines = (vertices - frame.corner) / frame.pixel, origin.outlines
+    number, unknown = judging.numbers(regions, outlines.labels)
+    curves = Curves(plane, curve_edges(triangles, regions))
+    distance, farthest = judging.hausdorff(Curves(outlines.points, outlines.segments[0]), curves)
+    wrong = judging.wrong_pixels(plane, triangles, number, curves, origin)
+    angle = measure(vertices, triangles, ["min_angle"])["min_angle"]
+    narrow = np.flatnonzero(angle < (origin.min_angle or 0.0) - 1e-9)
+    middles = vertices[triangles].mean(axis=1)
+    missing, extra = judging.neighbours(triangles, number, outlines)
+    facts: dict[str, Any] = {
+        "hausdorff": distance * frame.pixel,
+        "hausdorff_at": _place(frame.world(farthest)),
+        "tolerance": None if origin.tolerance is None else origin.tolerance * frame.pixel,
+        "areas": judging.areas(plane, triangles, number, origin, frame.pixel),
+        "displaced": judging.displaced(plane, triangles, number, origin),
+        "topology": judging.topology(triangles, number, outlines),
+        "unknown_labels": unknown,
+        "neighbours_missing": missing,
+        "neighbours_extra": extra,
+        "wrong_pixels": len(wrong),
+        "wrong_pixels_at": [_place(p) for p in frame.world(wrong[:PLACES])],
+        **judging.defects(vertices, triangles, regions),
+        "smallest_angle": float(angle.min()),
+        "smallest_angle_at": _place(middles[np.argmin(angle)]),
+        "min_angle": origin.min_angle,
+        "narrow": len(narrow),
+        "narrow_at": [_place(p) for p in middles[narrow[:PLACES]]],
+    }
+    return Report(
+        origin.recipe, origin.settings, origin.counted, len(vertices), len(triangles), **facts, warnings=_warnings(facts)
+    )  # fmt: skip
+
+
+def _warnings(facts: dict[str, Any]) -> list[str]:
+    """One line for each promise that is not kept."""
+    lines = [f"{name}: {facts[name]}" for name in judging.DEFECTS if facts[name]]
+    lines += [f"label {v} is in the mesh, not in the image" for v in facts["unknown_labels"]]
+    lines += [
+        f"label {v}: {t['found'][0]} components with {t['found'][1]} holes, expected {t['expected'][0]} with {t['expected'][1]}"
+        for v, t in facts["topology"].items()
+        if t["found"] != t["expected"]
+    ]
+    lines += [f"labels {a} and {b} touch in the image, not in the mesh" for a, b in facts["neighbours_missing"]]
+    lines += [f"labels {a} and {b} touch in the mesh, not in the image" for a, b in facts["neighbours_extra"]]
+    if facts["tolerance"] is not None:
+        if facts["hausdorff"] > facts["tolerance"] * (1 + 1e-9):
+            apart, at = facts["hausdorff"], facts["hausdorff_at"]
+            lines.append(f"outline and mesh are {apart:.4g} apart at {at}, tolerance {facts['tolerance']:.4g}")
+        lines += [f"label {v} lies elsewhere than in the image" for v in facts["displaced"]]
+    if facts["wrong_pixels"]:
+        lines.append(f"{facts['wrong_pixels']} pixel centres lie in a wrong region, the first at {facts['wrong_pixels_at'][0]}")
+    if facts["narrow"]:
+        at = facts["smallest_angle_at"]
+        lines.append(f"{facts['narrow']} triangles below {facts['min_angle']:g} degrees, the worst {facts['smallest_angle']:.4g} at {at}")
+    return lines
+
+
+def _plain(value: Any) -> Any:
+    """Turn what JSON does not know into what it does: numpy numbers into plain ones, all else into words."""
+    plain = value.item() if isinstance(value, np.generic) else str(value)
+    return float(plain) if isinstance(plain, np.generic) else plain  # numpy's long double has no plain form
+
+
+def _place(xy: Floats) -> tuple[float, float]:
+    return round(float(xy[0]), 6), round(float(xy[1]), 6)

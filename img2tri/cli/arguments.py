@@ -1,0 +1,155 @@
+"""The options of the command line: arguments as typed -> a namespace, with numbers as numbers.
+
+Only what makes a text a number, a pair or a list is checked here; what values may be is for `img2tri.mesh_image` to say.
+"""
+
+from __future__ import annotations
+
+import re
+from argparse import ArgumentParser, Namespace, RawDescriptionHelpFormatter
+from collections.abc import Sequence
+from typing import NoReturn
+
+from img2tri import __version__
+from img2tri.cli.mesh_options import add_mesh_options, number, whole
+
+IMAGES = "PNG, TIFF, JPEG, BMP and others; - for stdin"
+EXAMPLES = """examples:
+  img2tri mesh femur.png -o femur.stl -o femur.vtu --plot femur_mesh.png
+  img2tri mesh slice.png -o bone.stl --threshold otsu --spacing 0.5 --height 5
+  img2tri mesh grains.png -o grains.vtu --labels --edge-length 2%
+  img2tri mesh scans/*.png --out-dir meshes --format stl --workers 4
+  img2tri mesh scans/*.png -o "meshes/{stem}.ply" --report "reports/{stem}.json"
+  cat femur.png | img2tri mesh - -o - --format stl > femur.stl
+  img2tri view-report femur.png -o femur.html --edge-length 8
+  img2tri quality femur.stl
+"""
+MESH = """Mesh images: the white zone, or every label of a label map.
+
+Lengths are in world units (8), pixels (8px) or percent of the image diagonal
+(2%). A pixel is 1 world unit unless --spacing says otherwise. A value that
+begins with a minus is joined by =, as in --origin=-5,-5.
+
+Of several images, one that fails does not stop the others; the last line says
+which did, and the exit status is 2.
+"""
+PAGE = """Mesh an image and write a page about it: the mesh over the image, to zoom into, a
+histogram of its quality, its certificate, and the command that makes it again.
+One file, which needs nothing else to be looked at. Options are those of mesh.
+"""
+QUALITY = """Print a table of the quality of plane meshes.
+
+q is 2 r / R, 1 for an equilateral triangle and 0 for a flat one; the other
+measures have the names and definitions of Verdict. Angles are in degrees.
+"""
+
+
+def parse(argv: Sequence[str]) -> Namespace:
+    """Read the arguments of ``img2tri``; `command` is the first of them.
+
+    Raises
+    ------
+    SystemExit
+        With status 0 for --help and --version; with 2 and one line on stderr for what cannot be understood.
+
+    Examples
+    --------
+    >>> given = parse(["mesh", "grains.png", "--labels", "1,2", "--spacing", "0.5"])
+    >>> given.images, given.labels, given.spacing, "edge_length" in given
+    (['grains.png'], [1, 2], 0.5, False)
+    """
+    given = _parser().parse_args(_unambiguous(argv))
+    if "names" in given:
+        given.names = dict(given.names)
+    return given
+
+
+def _unambiguous(argv: Sequence[str]) -> list[str]:
+    """Join ``--labels`` and its list, if one follows; argparse would take the name of an image for it."""
+    joined: list[str] = []
+    for argument in argv:
+        if joined and joined[-1] == "--labels":
+            joined[-1] = "--labels=all"
+            if re.fullmatch(r"-?\d+(,-?\d+)*", argument):
+                joined[-1] = f"--labels={argument}"
+                continue
+        joined.append(argument)
+    return joined
+
+
+class _Parser(ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        """Say what is wrong in one line, without the usage of all options before it."""
+        self.exit(2, f"img2tri: {message.removeprefix('argument ')}; see {self.prog} --help\n")
+
+
+def _parser() -> ArgumentParser:
+    parser = _Parser(
+        prog="img2tri",
+        description="From an image to a triangle mesh one can compute on, plot or print.",
+        epilog=EXAMPLES,
+        formatter_class=_formatter,
+        allow_abbrev=False,
+    )
+    parser.add_argument("--version", action="version", version=f"img2tri {__version__}")
+    commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True, title="commands")
+    mesh = commands.add_parser(
+        "mesh",
+        help="mesh images",
+        usage="img2tri mesh IMAGE... -o MESH [options]\n       img2tri mesh IMAGE... --out-dir FOLDER [options]",
+        description=MESH,
+        epilog=EXAMPLES,
+        formatter_class=_formatter,
+        allow_abbrev=False,
+    )
+    _add_files(mesh)
+    add_mesh_options(mesh)
+    page = commands.add_parser(
+        "view-report",
+        help="a page about a mesh",
+        usage="img2tri view-report IMAGE -o PAGE [options]",
+        description=PAGE,
+        formatter_class=_formatter,
+        allow_abbrev=False,
+    )
+    page.add_argument("image", metavar="IMAGE", help=IMAGES)
+    page.add_argument("-o", "--output", required=True, metavar="PAGE", help=".html, or - for stdout")
+    page.add_argument("--quiet", action="store_true", help="print errors only")
+    add_mesh_options(page)
+    quality = commands.add_parser("quality", help="judge meshes", description=QUALITY, formatter_class=_formatter, allow_abbrev=False)
+    quality.add_argument("meshes", nargs="+", metavar="MESH", help=".stl, .ply, .obj, .off, .glb, .vtp, .vtu, .msh or .bdf; - for stdin")
+    quality.add_argument("--format", metavar="F", help="of a mesh on stdin, such as stl")
+    return parser
+
+
+def _formatter(prog: str) -> RawDescriptionHelpFormatter:
+    return RawDescriptionHelpFormatter(prog, max_help_position=30)
+
+
+def _add_files(parser: ArgumentParser) -> None:
+    """Add the images and the files that ``img2tri mesh`` makes of them."""
+    parser.add_argument("images", nargs="+", metavar="IMAGE", help=IMAGES)
+
+    about = (
+        "With several images, names hold {stem}, which becomes the name of the image without folder and suffix, stdin for -.\n"
+        "When a mesh goes to stdout, what is else printed there goes to stderr."
+    )
+    add = parser.add_argument_group("files to write", about).add_argument
+    formats = (
+        "to print or look at: .stl .ply .obj .off .3mf .glb .vtp .vtu; for solvers: .msh .inp .bdf .xdmf .vtkhdf; outlines: .svg .dxf "
+        ".geojson; - for stdout, with --format; may be given several times"
+    )
+    add("-o", "--output", dest="outputs", action="append", default=[], metavar="MESH", help=formats)
+    add("--out-dir", metavar="FOLDER", help="write {stem} with the suffix of each --format to this folder, made if its parent is there")
+    about_format = "of files in --out-dir (default ply) or of -o -, such as stl; for --out-dir may be given several times"
+    add("--format", dest="formats", action="append", default=[], metavar="F", help=about_format)
+    add("--height", type=number, metavar="H", help="world units: write the closed solid from z = 0 to H, for printing; else flat")
+    add("--plot", metavar="FIGURE", help=".png, .svg or .pdf: the mesh over its image, and a histogram")
+    colours = ("quality", "region", "none")
+    add("--colour-by", choices=colours, default="quality", help="what the figure shows; none: red edges (default quality)")
+    add("--report", metavar="REPORT", help=".json: what the mesh keeps of what was promised; a warning for each promise that it does not")
+    add("--quiet", action="store_true", help="print errors and warnings only")
+
+    add = parser.add_argument_group("how it is run").add_argument
+    add("--workers", type=whole, default=1, metavar="N", help="mesh so many images at once, in processes of their own (default 1: in this "
+        "one); the files are the same")  # fmt: skip

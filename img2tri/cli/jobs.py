@@ -1,0 +1,204 @@
+"""Which files are made of which image: arguments -> jobs, one for each image.
+
+All names are checked here, before the first image is read: whether each can be written, and that none is meant for two images, or is an
+image itself. A job holds all there is to know to do it, so that another process can.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from argparse import Namespace
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from img2tri.cli.mesh_options import MESH_OPTIONS
+from img2tri.cli.streams import DASH, STEM, check_stdin, check_stdout
+from img2tri.errors import FileError, ParameterError, finite
+
+if TYPE_CHECKING:
+    from img2tri.raster.io.byte_sources import Source
+
+USUAL_FORMAT = ".ply"  # keeps all digits and the regions, and is read everywhere
+SEVERAL_FILES = (".xdmf",)
+LETTERS_ALIKE = ("darwin", "win32")  # where names in large and small letters are one
+
+
+@dataclass(frozen=True)
+class Job:
+    """An image, and what is to be made of it.
+
+    Attributes
+    ----------
+    image, source
+        As typed; and its bytes, once they are read from stdin.
+    options, height
+        Of mesh_image and of the meshes.
+    meshes, plot, colour_by, report
+        The names of files, and what the figure shows.
+    sent
+        The suffix of the mesh that goes to stdout.
+    quiet
+        Whether nothing is to be said about it.
+    """
+
+    image: str
+    options: dict[str, Any]
+    source: Source | None = None
+    height: float | None = None
+    meshes: tuple[str, ...] = ()
+    plot: str | None = None
+    colour_by: str | None = "quality"
+    report: str | None = None
+    sent: str | None = None
+    quiet: bool = False
+
+
+def mesh_options(arguments: Namespace) -> dict[str, Any]:
+    """Collect the options that go on to mesh_image, if they were given."""
+    return {name: getattr(arguments, name) for name in MESH_OPTIONS if name in arguments}
+
+
+@contextmanager
+def folder(path: str | None) -> Iterator[None]:
+    """Make the folder for the results if it is not there; if none came, it goes again."""
+    made = False
+    if path is not None:
+        try:
+            os.mkdir(path)
+            made = True
+        except FileExistsError:
+            pass  # if it is no folder, the first name in it says so
+        except (OSError, ValueError) as problem:
+            text = getattr(problem, "strerror", None) or problem
+            raise FileError(f"--out-dir: expected a folder, or the name of one to be made, found {path!r}: {text}") from problem
+    try:
+        yield
+    finally:
+        if made and path is not None:
+            with suppress(OSError):
+                os.rmdir(path)  # refused unless empty
+
+
+def jobs_of(arguments: Namespace) -> list[Job]:
+    """Name the files of every image; see that each can be written, and that none is there twice or an image itself."""
+    from img2tri.views.formats import save_load as files
+    from img2tri.views.formats import svg_dxf_geojson as vectors
+    from img2tri.views.formats.atomic_write import writable
+    from img2tri.views.formats.solvers import solver_files as export
+
+    if arguments.height is not None:
+        finite("height", arguments.height, above=0)
+    if DASH in arguments.images:
+        _check_stdin(arguments.images.count(DASH))
+    known = {**files.FORMATS, **export.EXPORTS, **vectors.FORMATS}
+    formats = _formats(arguments, known)
+    sent, wanted = _sent(arguments, formats), _wanted(arguments, known, formats)
+    owners = {_same(os.path.realpath(image)): image for image in arguments.images if image != DASH}
+    jobs = []
+    for image in arguments.images:
+        names: dict[str, list[str]] = {option: [] for option in ("-o", "--out-dir", "--plot", "--report")}
+        for option, where, name, suffixes in wanted:
+            path = os.path.join(where, _named(name, option, image, len(arguments.images)))
+            for place in map(_same, _with_companions(os.fspath(writable(path, suffixes)))):
+                if place in owners:
+                    raise FileError(f"{option}: expected a file of its own, found {path!r}, which is in use for {owners[place]!r}")
+                owners[place] = image
+            names[option].append(path)
+        job = Job(
+            image, mesh_options(arguments), height=arguments.height, meshes=(*names["-o"], *names["--out-dir"]),
+            plot=next(iter(names["--plot"]), None), colour_by=None if arguments.colour_by == "none" else arguments.colour_by,
+            report=next(iter(names["--report"]), None), sent=sent, quiet=arguments.quiet,
+        )  # fmt: skip
+        jobs.append(job)
+    return jobs
+
+
+def _formats(arguments: Namespace, known: Collection[str]) -> list[str]:
+    """Return the suffixes that --format names."""
+    suffixes = list(map(_suffix, arguments.formats))
+    for name, suffix in zip(arguments.formats, suffixes, strict=True):
+        if suffix not in known:
+            raise ParameterError(f"--format: expected one of {', '.join(sorted(s[1:] for s in known))}, found {name!r}")
+    if suffixes and arguments.out_dir is None and DASH not in arguments.outputs:
+        raise ParameterError("--format: expected with --out-dir or -o -, found neither; other names have the format as their suffix")
+    return list(dict.fromkeys(suffixes))
+
+
+def _sent(arguments: Namespace, suffixes: list[str]) -> str | None:
+    """Return the suffix of the mesh that goes to stdout, if one does."""
+    count = arguments.outputs.count(DASH)
+    if not count:
+        return None
+    if count > 1 or len(arguments.images) > 1:
+        found = f"{count} times" if count > 1 else f"{len(arguments.images)} images"
+        raise ParameterError(f"-o -: expected once, and with one image, found {found}; for several, --out-dir names a folder")
+    if len(suffixes) != 1:
+        found = ", ".join(suffix[1:] for suffix in suffixes) or "none"
+        raise ParameterError(f"--format: expected one with -o -, as in --format stl, found {found}")
+    if suffixes[0] in SEVERAL_FILES:
+        raise ParameterError(f"-o -: expected a format of one file, found {suffixes[0][1:]}, which is several; give it a name")
+    check_stdout(suffixes[0])
+    return suffixes[0]
+
+
+def _wanted(arguments: Namespace, known: Collection[str], formats: list[str]) -> list[tuple[str, str, str, Collection[str]]]:
+    """List the files wanted for each image: the option, folder and name as typed, and the suffixes the name may have."""
+    wanted: list[tuple[str, str, str, Collection[str]]] = [("-o", "", name, known) for name in arguments.outputs if name != DASH]
+    if arguments.out_dir is not None:
+        wanted += [("--out-dir", arguments.out_dir, "{stem}" + suffix, known) for suffix in formats or [USUAL_FORMAT]]
+    if arguments.plot:
+        from img2tri.views.figures.plot import SUFFIXES
+
+        wanted.append(("--plot", "", arguments.plot, SUFFIXES))
+    if arguments.report:
+        wanted.append(("--report", "", arguments.report, (".json",)))
+    return wanted
+
+
+def stem(image: str) -> str:
+    """Return the name of an image without folder and suffix."""
+    return STEM if image == DASH else os.path.splitext(os.path.basename(image))[0]
+
+
+def _named(name: str, option: str, image: str, images: int) -> str:
+    """Return the name of a file for an image, with its stem in place of ``{stem}``."""
+    if images > 1 and "{stem}" not in name:
+        where, suffix = os.path.dirname(name), os.path.splitext(name)[1]
+        example = os.path.join(where, "{stem}" + suffix)
+        raise ParameterError(f"{option}: expected a name with {{stem}} for {images} images, found {name!r}; for example {example!r}")
+    return name.replace("{stem}", stem(image))
+
+
+def suffix_of_stdin(arguments: Namespace) -> str | None:
+    """Return the suffix of a mesh on stdin, if ``img2tri quality`` is to read one."""
+    count = arguments.meshes.count(DASH)
+    if bool(count) != (arguments.format is not None):
+        raise ParameterError(f"--format: expected with a mesh on stdin, and with nothing else, found {arguments.format or 'none'}")
+    if count:
+        _check_stdin(count)
+    return None if arguments.format is None else _suffix(arguments.format)
+
+
+def _check_stdin(count: int) -> None:
+    if count > 1:
+        raise ParameterError(f"-: expected once, as stdin is read once, found {count} times")
+    check_stdin()
+
+
+def _suffix(name: str) -> str:
+    return "." + name.lower().removeprefix(".")
+
+
+def _with_companions(path: str) -> list[str]:
+    """Return the name of a file, and those of the files that may be written beside it."""
+    from img2tri.views.formats.solvers.xdmf import ENDS, FACETS
+
+    name, suffix = os.path.splitext(path)
+    return [name + ending + suffix for ending in (("", FACETS, ENDS) if suffix.lower() in SEVERAL_FILES else ("",))]
+
+
+def _same(path: str) -> str:
+    return path.casefold() if sys.platform in LETTERS_ALIKE else path

@@ -1,0 +1,174 @@
+"""Doing a job: an image is meshed and its files are written -> an outcome, with all there is to say about it.
+
+Nothing is printed here, since this may be another process than the one that has the terminal. What a user can cause ends in the outcome;
+what is a mistake of ours is raised.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from img2tri.cli.jobs import Job
+from img2tri.cli.streams import DASH, STEM, from_stdin, named
+from img2tri.errors import Img2triError
+
+if TYPE_CHECKING:
+    from img2tri.mesh import TriangleMesh
+    from img2tri.raster.io.byte_sources import Source
+
+Progress = Callable[[str, float], None]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a job.
+
+    Attributes
+    ----------
+    image
+        As typed.
+    lines
+        What the mesh is, what was chosen for the user, and the files.
+    warnings
+        Promises that are not kept.
+    problem
+        Why there is no mesh; None if there is one.
+    data
+        The mesh for stdout.
+    """
+
+    image: str
+    lines: Sequence[str] = ()
+    warnings: Sequence[str] = ()
+    problem: str | None = None
+    data: bytes | None = None
+
+
+def make(job: Job, progress: Progress) -> Outcome:
+    """Mesh an image and write its files."""
+    try:
+        return _made(job, progress)
+    except (Img2triError, MemoryError) as error:
+        return Outcome(job.image, problem=problem(error))
+
+
+def held(job: Job) -> Job | Outcome:
+    """Return a job that another process can do, with the bytes of stdin in it, or what became of it."""
+    try:
+        image = opened(job.image, job.options)
+        return job if isinstance(image, str) else replace(job, source=image)
+    except (Img2triError, MemoryError) as error:
+        return Outcome(job.image, problem=problem(error))
+
+
+def problem(error: BaseException) -> str:
+    """Say in one line what was wrong."""
+    return "expected more memory than there is" if isinstance(error, MemoryError) else " ".join(str(error).split())
+
+
+def _made(job: Job, progress: Progress) -> Outcome:
+    from img2tri.pipeline import mesh_image
+    from img2tri.views.formats.atomic_write import store, writable
+
+    image = job.source or opened(job.image, job.options)
+    mesh = mesh_image(image, progress=progress, **job.options)
+    for path in job.meshes:
+        mesh.save(path, height=job.height)
+    if job.plot:
+        mesh.plot(pixels(image, job.options), job.plot, colour_by=job.colour_by)
+    if job.report:
+        store(writable(job.report, [".json"]), (mesh.report.to_json() + "\n").encode())
+    return Outcome(
+        job.image,
+        () if job.quiet else (*about(job.image, mesh), *_chosen(job, mesh)),
+        mesh.report.warnings if job.report else (),
+        data=None if job.sent is None else _bytes(mesh, job.sent, job.height),
+    )
+
+
+def view(job: Job, command: str, progress: Progress) -> tuple[list[str], str]:
+    """Mesh an image; return what there is to say about the mesh, and a page about it."""
+    from img2tri.pipeline import mesh_image
+    from img2tri.triangles.tools.quality import measure
+    from img2tri.views.figures.html_page import page
+
+    image = opened(job.image, job.options)
+    mesh = mesh_image(image, progress=progress, **job.options)
+    text = page(
+        mesh.vertices,
+        mesh.triangles,
+        **measure(mesh.vertices, mesh.triangles, ["q", "min_angle"]),
+        frame=mesh.frame,
+        report=mesh.report.to_json(),
+        regions=mesh.regions,
+        image=pixels(image, job.options),
+        names=mesh.names,
+        title=os.path.basename(job.image) if job.image != DASH else STEM,
+        command=command,
+        unit="",
+    )
+    return about(job.image, mesh), text
+
+
+def mesh_of(path: str, suffix: str | None) -> TriangleMesh:
+    """Load a mesh, or one of the format `suffix` from stdin."""
+    from img2tri.mesh import TriangleMesh
+    from img2tri.views.formats.save_load import load
+
+    if path != DASH:
+        return TriangleMesh(*load(path))
+    with named(suffix or "") as place:
+        Path(place).write_bytes(from_stdin().data)
+        return TriangleMesh(*load(place))
+
+
+def opened(image: str, options: dict[str, Any]) -> str | Source:
+    """Return an image by its name, or what is on stdin, which can be read once only."""
+    return from_stdin(**_of(options, "max_pixels")) if image == DASH else image
+
+
+def pixels(image: str | Source, options: dict[str, Any]) -> Any:
+    """Read the part of an image that was meshed."""
+    from img2tri.raster.io.reading import read
+    from img2tri.raster.labels.cropping import crop
+
+    return crop(read(image, **_of(options, "spacing", "origin", "page", "max_pixels")), options.get("crop")).values
+
+
+def _of(options: dict[str, Any], *names: str) -> dict[str, Any]:
+    return {name: options[name] for name in names if name in options}
+
+
+def _bytes(mesh: TriangleMesh, suffix: str, height: float | None) -> bytes:
+    """Return a mesh as the bytes of a file."""
+    with named(suffix) as path:
+        mesh.save(path, height=height)
+        return path.read_bytes()
+
+
+# ---- what there is to say ----
+
+
+def about(name: str, mesh: TriangleMesh) -> list[str]:
+    """Say what a mesh is, and give the table of its quality."""
+    head, _, table = str(mesh.quality()).partition("\n")
+    defects = head.partition(", ")[2]
+    return [f"{name}: {repr(mesh).partition(': ')[2]}" + (f"; {defects}" if defects else ""), table]
+
+
+def _chosen(job: Job, mesh: TriangleMesh) -> list[str]:
+    """Say what was chosen for the user, and which files there are."""
+    from img2tri.recipes.conforming import CONFETTI
+
+    settings = mesh.origin.settings if mesh.origin else {}
+    length, threshold = settings["edge_length"], settings["threshold"]
+    chosen = f"edge length {length if isinstance(length, str) else f'{length:g}'}"
+    chosen += "" if threshold is None else f", threshold {threshold:g} ({settings['threshold_from']})"
+    count = len(mesh.origin.outlines.left) if mesh.origin and "min_area" not in job.options else 0
+    chosen += "" if count < CONFETTI else f"; {count:,} outlines, of which --min-area 20px2 would drop specks"
+    files = [*job.meshes, *filter(None, (job.plot, job.report))]
+    return [f"{'chosen':<12}{chosen}", *([f"{'saved':<12}{', '.join(files)}"] if files else [])]

@@ -1,0 +1,234 @@
+"""A file -> the values in it, what was noted while reading, and the size of a pixel in millimetres if the file says it.
+
+Pillow decodes: it keeps palette indices and bit depth, reports truncated files and knows EXIF. It loses bits in two
+places, which are read otherwise: PNG colours of 16 bit by OpenCV, and TIFFs of types Pillow has no mode for by tifffile. DICOM and
+NIfTI, known by their content or else by their suffix, are read in ``medical``.
+"""
+
+from __future__ import annotations
+
+import math
+import struct
+import threading
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from typing import Any
+
+import numpy as np
+from PIL import Image, UnidentifiedImageError
+
+from img2tri.errors import FileError, ImageError, Img2triError
+from img2tri.raster.io.byte_sources import Source
+from img2tri.raster.io.icons import check_icon
+from img2tri.raster.io.metadata import exif, orientation, pixel_size, upright
+from img2tri.raster.io.pages import Decoded, check_page, turned
+from img2tri.raster.io.pixel_arrays import Pixels
+from img2tri.raster.io.tiff import decode_tiff
+
+BITS, SAMPLE_FORMAT = 258, 339  # tags of TIFF
+TIFF_STARTS = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
+DRAWINGS = ("EPS", "WMF")
+MEDICAL = {".dcm": "DICOM", ".dicom": "DICOM", ".nii": "NIfTI", ".nii.gz": "NIfTI"}
+GZIP = b"\x1f\x8b"  # NIfTI files are often compressed as a whole
+NIFTI_START = 348
+START = 1024  # bytes that tell all formats apart, also a NIfTI file that is compressed
+
+# Modes of Pillow whose arrays are the values in the file; the others become one of these.
+PLAIN_MODES = ("1", "L", "P", "RGB", "RGBA", "I", "F", "I;16", "I;16B", "I;16L", "I;16N")
+CONVERTED_MODES = {"LA": "RGBA", "RGBa": "RGBA", "PA": "RGBA", "RGBX": "RGB", "CMYK": "RGB", "YCbCr": "RGB"}
+
+_limit_lock = threading.Lock()
+_limits: list[float] = []  # Pillow's own limit, then those in force at the moment
+
+
+def decode(source: Source, page: int, max_pixels: int) -> Decoded:
+    """Decode one image of a file.
+
+    Parameters
+    ----------
+    source
+        The file.
+    page
+        Which image, frame or slice of a file with several, from 0.
+    max_pixels
+        Refuse an image with more.
+
+    Returns
+    -------
+    values, notes, size
+        Pixels upright; see `reading.read` for the notes; (dx, dy) in millimetres or None.
+
+    Raises
+    ------
+    FileError
+        If the file is missing, a folder, not an image, damaged or truncated; if a library it needs is.
+    ImageError
+        If it has more than `max_pixels`.
+    ParameterError
+        If it has no such page.
+    """
+    start = source.start(START)
+    try:
+        kind = _medical(source, start)
+        if kind:
+            from img2tri.raster.io.dicom_nifti import decode_dicom, decode_nifti
+
+            return (decode_dicom if kind == "DICOM" else decode_nifti)(source, page, max_pixels)
+        if start[:4] in TIFF_STARTS and not _pillow_reads_tiff(source, page):
+            return decode_tiff(source, page, max_pixels)
+        return _decode(source, start, page, max_pixels)
+    except Img2triError:
+        raise
+    except MemoryError as error:
+        # Often only because of a length somewhere in a damaged file.
+        raise FileError(f"image: {str(source)!r} is damaged, or needs more memory than there is") from error
+    except UnidentifiedImageError as error:
+        raise FileError(f"image: {str(source)!r} is not an image in a known format") from error
+    except Image.DecompressionBombError as error:
+        # The file holds a larger image than its header claims.
+        raise ImageError(f"image: expected at most max_pixels={max_pixels} pixels, found more in {str(source)!r} ({error})") from error
+    except Exception as error:
+        # Decoders meet damaged data with errors of every type.
+        raise FileError(f"image: {str(source)!r} is damaged or truncated ({error})") from error
+
+
+def _medical(source: Source, start: bytes) -> str | None:
+    """Tell a DICOM and a NIfTI file by its content, or by its suffix where that says nothing."""
+    if start[128:132] == b"DICM":
+        return "DICOM"
+    if start[:2] == GZIP:
+        with suppress(zlib.error):
+            start = zlib.decompressobj(wbits=zlib.MAX_WBITS | 16).decompress(start, NIFTI_START)
+    if start[344:348] == b"n+1\0" or start[4:8] == b"n+2\0":
+        return "NIfTI"
+    return next((kind for suffix, kind in MEDICAL.items() if str(source).lower().endswith(suffix)), None)
+
+
+@contextmanager
+def _limit(pixels: float) -> Iterator[None]:
+    """Set Pillow's limit of pixels, a global one that TIFF and GIF ask for while they decode, to ours if that is greater.
+
+    Where several threads decode, the greatest limit holds until the last of them is done.
+    """
+    with _limit_lock:
+        if not _limits:
+            _limits.append(Image.MAX_IMAGE_PIXELS or math.inf)
+        _limits.append(pixels)
+        Image.MAX_IMAGE_PIXELS = max(_limits)  # type: ignore[assignment]
+    try:
+        yield
+    finally:
+        with _limit_lock:
+            _limits.remove(pixels)
+            Image.MAX_IMAGE_PIXELS = max(_limits)  # type: ignore[assignment]
+            if len(_limits) == 1:
+                usual = _limits.pop()
+                Image.MAX_IMAGE_PIXELS = None if usual == math.inf else int(usual)
+
+
+@contextmanager
+def _opened(source: Source, max_pixels: float = math.inf) -> Iterator[Image.Image]:
+    """Open a file with Pillow, whatever size it claims; what is decoded may have `max_pixels`.
+
+    Pillow is not given the path, as it would map the file into memory, and scrambles turned TIFFs when it does (13.0).
+    """
+    with source.open() as file:
+        with _limit(math.inf):
+            img = Image.open(file)
+        with img, _limit(max_pixels):
+            yield img
+
+
+def _decode(source: Source, start: bytes, page: int, max_pixels: int) -> Decoded:
+    check_icon(source, max_pixels)
+    with _opened(source, max_pixels) as img:
+        kind = str(img.format)
+        if kind in DRAWINGS:
+            raise FileError(f"image: {str(source)!r} is a drawing ({kind}), not pixels; convert it to PNG first")
+        pages = int(getattr(img, "n_frames", 1))
+        notes = {"format": kind} | check_page(source, page, pages, *img.size, max_pixels)
+        if page:
+            img.seek(page)
+            check_page(source, page, pages, *img.size, max_pixels)
+        turn, size = orientation(exif(img)), pixel_size(img)
+        img.load()
+        deep = _deep_png(source, start) if page == 0 else None
+        values, palette = (deep, None) if deep is not None else _values(img)
+        if palette is not None:
+            notes["palette"] = palette
+    # Pillow turns TIFFs itself while loading.
+    return turned(values if kind == "TIFF" else upright(values, turn), turn, notes, size)
+
+
+def _values(img: Image.Image) -> tuple[Pixels, Pixels | None]:
+    """Return the values of a loaded image, and the palette if they are indices."""
+    if img.mode == "P":
+        return np.asarray(img), _palette(img)
+    if img.mode == "La":  # gray multiplied by alpha
+        gray, alpha = img.split()
+        img = Image.merge("RGBa", (gray, gray, gray, alpha))
+    if img.mode in CONVERTED_MODES:
+        img = img.convert(CONVERTED_MODES[img.mode])
+    if img.mode not in PLAIN_MODES:
+        raise ImageError(f"image: expected gray values, a palette, RGB or CMYK, found the colour space {img.mode}; convert it first")
+    values = np.asarray(img)
+    if img.mode == "I":
+        values = values.astype(_whole_type(img), copy=False)
+    key = img.info.get("transparency")
+    if key is None or img.mode == "RGBA":
+        return values, None
+    # One gray value or colour of the file stands for full transparency.
+    seen = (values != np.asarray(key)).reshape(*values.shape[:2], -1).any(axis=2)
+    colours = np.broadcast_to(values.reshape(*values.shape[:2], -1), (*values.shape[:2], 3))
+    most = 1 if values.dtype == bool else np.iinfo(values.dtype).max
+    return np.dstack([colours, seen * np.asarray(most, values.dtype)]), None
+
+
+def _whole_type(img: Image.Image) -> type[np.integer[Any]]:
+    """Return the type of the values in the file: Pillow has int32 for all whole numbers it has no other mode for."""
+    if img.format != "TIFF":
+        return np.uint16 if img.format == "PPM" else np.int32
+    bits, kind = (img.tag_v2.get(tag, (1,))[0] for tag in (BITS, SAMPLE_FORMAT))  # type: ignore[attr-defined]
+    return np.uint32 if kind == 1 else np.int16 if bits == 16 else np.int32
+
+
+def _palette(img: Image.Image) -> Pixels:
+    """Return the 256 colours of a palette, with alpha where it has any; colours beyond its end are black."""
+    assert img.palette is not None
+    channels = "RGBA" if "transparency" in img.info or img.palette.mode == "RGBA" else "RGB"
+    img.apply_transparency()
+    table = np.asarray(img.getpalette(channels), np.uint8).reshape(-1, len(channels))
+    black = np.array([0, 0, 0, 255], np.uint8)[: len(channels)]
+    return np.vstack([table, np.broadcast_to(black, (max(0, 256 - len(table)), len(channels)))])
+
+
+def _deep_png(source: Source, start: bytes) -> Pixels | None:
+    """Return the values of a PNG with colours of 16 bit, of which Pillow keeps 8; None for any other image.
+
+    Pillow has decoded the file before, so it is whole.
+    """
+    if start[:8] != b"\x89PNG\r\n\x1a\n" or start[24] != 16 or start[25] not in (2, 4, 6):
+        return None
+    import cv2
+
+    with source.open() as file:
+        whole = file.read()
+    values: Pixels = np.asarray(cv2.imdecode(np.frombuffer(whole, np.uint8), cv2.IMREAD_UNCHANGED))
+    return values[..., [2, 1, 0, 3][: values.shape[2]]]  # OpenCV's order is blue, green, red
+
+
+def _pillow_reads_tiff(source: Source, page: int) -> bool:
+    """Tell whether Pillow has a mode for the values of a TIFF that loses nothing.
+
+    Values of mode I and F come out in the wrong byte order if the file is big-endian and compressed (13.0).
+    """
+    try:
+        with _opened(source) as img:
+            if page < int(getattr(img, "n_frames", 1)):
+                img.seek(page)
+            bits, kinds = set(img.tag_v2.get(BITS, (1,))), set(img.tag_v2.get(SAMPLE_FORMAT, (1,)))  # type: ignore[attr-defined]
+            wide = ("I;16", "I;16B", "I", "F") if img.tag_v2.prefix == b"II" else ("I;16", "I;16B")  # type: ignore[attr-defined]
+            return (max(bits) <= 8 and kinds == {1}) or (max(bits) <= 32 and img.mode in wide)
+    except (OSError, SyntaxError, ValueError, KeyError, struct.error):
+        return False

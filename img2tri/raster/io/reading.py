@@ -1,0 +1,149 @@
+"""A file, an array or a ``pyvista.ImageData`` -> a `Picture`: the values as they are, and where they lie in the world.
+
+Nothing is scaled, thresholded or turned into gray here, so label numbers, 16-bit values and palette indices survive.
+Files are decoded by Pillow rather than by ``cv2.imread``, which hides much of what matters: it hands out a partial image for a
+truncated JPEG, ignores the orientation a camera noted, and replaces palette indices, which may be labels, by colours. DICOM and
+NIfTI come through pydicom and nibabel.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from img2tri.errors import ParameterError, finite, integer, shown
+from img2tri.raster.io.byte_sources import is_file, source
+from img2tri.raster.io.pixel_arrays import pixels
+from img2tri.raster.io.pyvista_image import from_image_data, is_image_data
+from img2tri.types import Frame, Picture
+
+Pair = tuple[float, float]
+
+FINEST = 1e-4  # px: how exact places in the world must be
+CARRY_SPACING = ("DICOM", "NIfTI")  # formats made to say how large a pixel is
+
+
+def read(
+    image: Any,
+    *,
+    spacing: float | Sequence[float] | str | None = None,
+    origin: str | Sequence[float] = "lower",
+    page: int = 0,
+    max_pixels: int = 2**28,
+) -> Picture:
+    """Read an image, and say where its pixels lie.
+
+    Parameters
+    ----------
+    image
+        A path (str or PathLike), or a file opened in binary mode, which is read to its end; an array (h, w) or (h, w, 3 or 4)
+        of bool, integers or floats; or a planar ``pyvista.ImageData``, whose active scalars are taken (its first ones if none are
+        active).
+    spacing
+        The size of a pixel in world units: a number, a pair (dx, dy), or "file", which takes the size or resolution noted in a
+        TIFF, PNG, JPEG, DICOM or NIfTI file, in millimetres. None is "file" for DICOM and NIfTI, if they note a size; 1 for
+        all else, whatever the file says, since many carry a resolution of 72 dpi nobody chose. An ImageData always keeps its own.
+    origin
+        "lower": x points right and y up, the lower-left corner of the image is at (0, 0). "upper": y points down, as in image
+        coordinates, the corner of the first pixel is at (0, 0). A pair (x, y): as "lower", with the corner there.
+    page
+        Which image of a file with several, from 0: a page, a frame, a slice across the third axis of a NIfTI file.
+    max_pixels
+        A file that claims more pixels than this is refused before it is decoded, so that a small file cannot fill the memory; so
+        is an open file that gives more than 8 bytes for each, and 1 MiB.
+
+    Returns
+    -------
+    Picture
+        Its `notes` hold what was found in a file: "format"; "pages" where there are several, and the "page" taken;
+        "orientation" (EXIF, 2 to 8) where the image had to be turned; "palette", (n, 3 or 4) uint8, where the values are
+        indices into it; "spacing", "file" or "ImageData", where it was not given in numbers. For more on DICOM and NIfTI see
+        `medical`.
+
+    Raises
+    ------
+    FileError
+        If the file is missing, a folder, not an image, damaged or truncated; if it needs a library that is not installed.
+    ImageError
+        If the values are not those of an image: wrong shape or type, no pixels, NaN or infinite, too many pixels or bytes.
+    ParameterError
+        If `spacing`, `origin`, `page` or `max_pixels` is not as described, or a file is opened as text.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> picture = read(np.zeros((20, 30)), spacing=0.5)
+    >>> picture.frame.bounds
+    (0.0, 0.0, 15.0, 10.0)
+    """
+    page, max_pixels = integer("page", page), integer("max_pixels", max_pixels, least=1)
+    if is_image_data(image):
+        if spacing is not None or not (isinstance(origin, str) and origin == "lower") or page:
+            raise ParameterError("spacing, origin, page: a pyvista.ImageData has its own place; leave them out, or change the object")
+        return from_image_data(image)
+    corner, upward = _corner(origin)
+    notes: dict[str, Any] = {}
+    if is_file(image):
+        from img2tri.raster.io.image_files import decode  # Pillow is loaded for files only
+
+        file = source(image, max_pixels=max_pixels)
+        values, notes, noted = decode(file, page, max_pixels)
+        name = str(file)
+    else:
+        name, noted = "array", None
+        if page:
+            raise ParameterError(f"page: expected 0 for an array, which is one image, found {shown(page)}")
+        values = image
+    values = pixels(values)
+    if spacing is None and noted is not None and notes.get("format") in CARRY_SPACING:
+        spacing = "file"
+    size = _spacing(spacing, noted, name)
+    if isinstance(spacing, str):
+        notes["spacing"] = spacing
+    h, w = values.shape[:2]
+    frame = Frame((h, w), size, corner, upward)
+    if math.ulp(max(map(abs, frame.bounds))) > FINEST * frame.pixel:
+        raise ParameterError(
+            f"origin: expected a corner within {FINEST / math.ulp(1.0) * frame.pixel:.0e} of 0 for pixels of {frame.pixel:g}, "
+            f"found {corner}; "
+            "beyond, numbers of 64 bits have no places for the vertices. Move the mesh afterwards"
+        )
+    return Picture(values, frame, name, notes)
+
+
+def _spacing(spacing: float | Sequence[float] | str | None, noted: Pair | None, source: str) -> Pair:
+    if spacing is None:
+        return 1.0, 1.0
+    if isinstance(spacing, str):
+        if spacing != "file":
+            raise ParameterError(f"spacing: expected a number, a pair (dx, dy), 'file' or None, found {spacing!r}")
+        if noted is None:
+            raise ParameterError(f"spacing: 'file' expected a resolution with a unit in {source!r}, found none; give the size of a pixel")
+        return noted
+    dx, dy = _pair("spacing", spacing) if _is_sequence(spacing) else (spacing, spacing)
+    size = finite("spacing", dx, above=0), finite("spacing", dy, above=0)
+    if not 1e-100 <= min(size) <= max(size) <= 1e100:
+        # Squares of lengths and their sums must be numbers too.
+        raise ParameterError(f"spacing: expected numbers from 1e-100 to 1e100, found {shown(spacing)}; choose another unit")
+    return size
+
+
+def _corner(origin: str | Sequence[float]) -> tuple[Pair, bool]:
+    if isinstance(origin, str) and origin in ("lower", "upper"):
+        return (0.0, 0.0), origin == "lower"
+    if not _is_sequence(origin):
+        raise ParameterError(f"origin: expected 'lower', 'upper' or a pair (x, y), found {shown(origin)}")
+    x, y = _pair("origin", origin)
+    return (finite("origin", x), finite("origin", y)), True
+
+
+def _is_sequence(value: object) -> bool:
+    return hasattr(value, "__len__") and not isinstance(value, (str, bytes)) and getattr(value, "ndim", 1) == 1
+
+
+def _pair(name: str, value: Any) -> tuple[Any, Any]:
+    if len(value) != 2:
+        raise ParameterError(f"{name}: expected a pair of numbers, found {len(value)}: {shown(value)}")
+    first, second = value
+    return first, second

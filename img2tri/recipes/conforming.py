@@ -1,0 +1,270 @@
+"""The conforming recipe: label map -> outlines -> points -> triangles, every region with its own outline.
+
+Outlines are made first, as fine as the pixels; then coarsened to the wanted spacing, kept clear of each other; then filled.
+Where a triangle comes out with too small an angle, the outlines there are made finer, and the mesh is made again: at the
+end of this road all outlines run through the middles between pixels, where they turn by right angles at most.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from img2tri.errors import ParameterError, finite
+from img2tri.raster.labels.segmentation import Zones
+from img2tri.shapes.periodic import FILLINGS, Twins, find_twins
+from img2tri.shapes.place.padded_chains import Points
+from img2tri.shapes.place.placement import place, place_on_sides
+from img2tri.shapes.simplify.area_preservation import area_error, keep_areas
+from img2tri.shapes.simplify.simplification import Draft, draft, remembered
+from img2tri.shapes.simplify.tangential_relocation import rooms, slid
+from img2tri.shapes.simplify.tolerance import refine
+from img2tri.shapes.simplify.vertex_offsets import fitted
+from img2tri.shapes.sizes.outline_sizes import by_curvature, by_pieces, by_thickness, limit_growth
+from img2tri.shapes.sizes.size_field import EdgeLength, Field, length_field
+from img2tri.shapes.trace.crack_edges import find_cracks
+from img2tri.shapes.trace.dual_edges import Links, pixel_areas
+from img2tri.types import Floats, Frame, Ints, Made, Outlines
+
+if TYPE_CHECKING:
+    from img2tri.triangles.generate.constrained_delaunay import NetworkError
+    from img2tri.triangles.generate.strip import Slide
+
+AREA_ERROR = 1e-4  # relative, of a region: above it breaks are moved for its sake
+USUAL_TRIANGLES = 2000  # what the default edge length aims at
+RESPACINGS = 2  # how often outlines are spaced anew around places that need shorter pieces
+MOST_TRIANGLES = 100_000_000  # some 2 GB of mesh, and several times that on the way
+LEAST_PIECE = 1e-3  # px; outlines are never cut so fine, so that this is as good as 0
+WAY_BACK = 0.7  # px: no point is farther from the middle of its link, or of its block
+CONFETTI = 3000  # outlines: so many are seldom wanted
+ATTEMPTS = 12  # rounds of refining the outlines; two are the most that ordinary images take
+
+
+def trace_outlines(
+    zones: Zones, frame: Frame, *, connectivity: int = 4, corners: str = "auto", outline: str = "smooth", periodic: str | None = None
+) -> tuple[Outlines, Links]:
+    """Trace the outlines of all regions of a label map, as fine as the pixels.
+
+    Parameters
+    ----------
+    zones
+        The label map, and the gray values that place its outlines, if there are any.
+    frame
+        Where the image lies; the outlines are in its plane.
+    connectivity
+        4: a checkerboard joins its lower label, so that a binary foreground joins through sides; 8: its higher one.
+    corners
+        "round" smooths them as all else.
+    outline
+        "smooth", or "pixel": exactly along the sides of pixels.
+    periodic
+        "x", "y" or "xy": the points on these opposite sides are put at the same places; see `img2tri.shapes.periodic`.
+    """
+    cracks = find_cracks(zones.labels, background=zones.background, upward=frame.upward, connectivity=connectivity)
+    if outline == "pixel":
+        return place_on_sides(cracks, frame)
+    outlines, links = place(cracks, frame, gray=zones.gray, level=zones.level, corners=corners != "round")
+    return find_twins(outlines, links, periodic).alike(outlines), links
+
+
+@dataclass(frozen=True, eq=False)
+class Sizes:
+    """Edge lengths wanted, in px.
+
+    Attributes
+    ----------
+    longest
+        The greatest length wanted anywhere.
+    field
+        Lengths over the image; None where it is the greatest everywhere.
+    boundary
+        Length along all outlines; None: as inside.
+    elements_across
+        How many edges at least across the thinnest places; None is not looked after.
+    segments_per_turn
+        How many edges at least to a full turn of an outline; None: as many as the tolerance needs.
+    shortest
+        Edges of outlines are not made shorter than this for the sake of the above, only where tolerance or topology need it.
+    gradation
+        Growth of lengths per unit of distance.
+    """
+
+    longest: float
+    field: Field | None = None
+    boundary: float | None = None
+    elements_across: float | None = None
+    segments_per_turn: float | None = None
+    shortest: float = 0.0
+    gradation: float = 0.17
+
+
+def wanted_sizes(
+    edge_length: EdgeLength | None,
+    labels: NDArray[Any],
+    links: Links,
+    frame: Frame,
+    *,
+    gradation: float,
+    boundary: float | str | None = None,
+    shortest: float | str | None = None,
+    elements_across: float | None = None,
+    segments_per_turn: float | None = None,
+) -> Sizes:
+    """Turn what a user says of edge lengths into px.
+
+    Equilateral triangles of the default length fill the regions about `USUAL_TRIANGLES` times.
+    """
+    gradation = finite("gradation", gradation, least=0.001, most=100)
+    if edge_length is None:
+        longest, field = max(4.0, math.sqrt(pixel_areas(links)[1:].sum() / USUAL_TRIANGLES * 4 / math.sqrt(3))), None
+    else:
+        longest, field = length_field(edge_length, frame, labels, gradation=gradation)
+        _check_number(longest, field, float(pixel_areas(links)[1:].sum()), frame)
+    return Sizes(
+        longest,
+        field,
+        None if boundary is None else frame.length("boundary_edge_length", boundary) / frame.pixel,
+        None if elements_across is None else finite("elements_across", elements_across, above=0),
+        None if segments_per_turn is None else finite("segments_per_turn", segments_per_turn, least=3),
+        0.0 if shortest is None else frame.length("min_edge_length", shortest) / frame.pixel,
+        gradation,
+    )
+
+
+def _check_number(longest: float, field: Field | None, area: float, frame: Frame) -> None:
+    """Refuse lengths that would take more triangles than there is memory for, before any of it is used."""
+    lengths = np.clip(longest if field is None else field.grid, 1e-100, 1e100)
+    number = 4 / math.sqrt(3) * float((1 / lengths**2).mean()) * (area if field is None else field.grid.size * field.cell**2)
+    if number > MOST_TRIANGLES:
+        enough = f"; of one length for all, {math.sqrt(area * 4 / math.sqrt(3) / MOST_TRIANGLES) * frame.pixel:.2g} is the least"
+        raise ParameterError(f"edge_length: expected at most {MOST_TRIANGLES:,} triangles, found lengths for {number:.2g}{enough}")
+
+
+def conform(
+    outlines: Outlines,
+    links: Links,
+    sizes: Sizes,
+    *,
+    tolerance: float = 0.5,
+    min_angle: float = 30.0,
+    corners: str = "auto",
+    keep_area: bool = True,
+    periodic: str | None = None,
+    interior: str = "lattice",
+    seed: int = 0,
+    progress: Callable[[str, float], object] | None = None,
+) -> Made:
+    """Mesh all regions of an image, given its dense outlines; lengths in px."""
+    from img2tri.triangles.generate.constrained_delaunay import NetworkError
+    from img2tri.triangles.generate.strip import Slide
+
+    tell = progress or (lambda *_: None)
+    count = len(outlines.left)
+    tell("spacing" if count < CONFETTI else f"spacing {count:,} outlines; min_area would drop specks", 0.3)
+    twins = find_twins(outlines, links, periodic)
+    coarse = _spaced(outlines, links, twins, sizes, tolerance, corners == "keep", keep_area)
+    if keep_area and area_error(coarse) > AREA_ERROR:
+        coarse = twins.settle(keep_areas(coarse, tolerance=tolerance), tolerance=tolerance)
+    yielding, began = tolerance, 0
+    for attempt in range(ATTEMPTS):
+        tell("triangles", 1 - 0.6 * 0.7**attempt)
+        slide = None
+        if interior == "lattice":
+            slide = Slide(rooms(coarse, shortest=sizes.shortest), partial(slid, coarse, tolerance=tolerance, keep_area=keep_area))
+        mesh, chains, doubtful = _filled(coarse, twins, sizes, slide, min_angle=min_angle, seed=seed)
+        if not len(doubtful) or attempt + 1 == ATTEMPTS:
+            break
+        before = coarse
+        coarse = refine(coarse, doubtful[:, 0] + 1j * doubtful[:, 1], within=1.0 + 0.5 * (attempt - began), tolerance=yielding)
+        coarse = twins.settle(coarse, tolerance=tolerance)
+        same = (coarse.breaks == before.breaks).all() and (coarse.moved == before.moved).all()
+        if same and yielding >= WAY_BACK:
+            break
+        if same or attempt + 1 == ATTEMPTS // 2:
+            # Rather too far from the outline than too sharp; the report tells.
+            yielding, began = max(tolerance, WAY_BACK), attempt + 1
+    if isinstance(mesh, NetworkError):
+        raise mesh
+    twins.check(chains, mesh[0])
+    counted = {"rounds": attempt + 1, "reset": int(coarse.reset.sum())}
+    if sizes.shortest:
+        first, last = coarse.pieces
+        counted["below_min_edge_length"] = int((abs(coarse.places[last] - coarse.places[first]) < sizes.shortest).sum())
+    return Made(*mesh, counted)
+
+
+def _filled(
+    coarse: Draft, twins: Twins, sizes: Sizes, slide: Slide | None, *, min_angle: float, seed: int
+) -> tuple[tuple[Floats, Ints, Ints] | NetworkError, Outlines, Floats]:
+    """Fill coarse outlines, with a lattice if their points may slide, else with scattered points.
+
+    Return vertices, triangles and regions, or why there are none; the outlines, twins divided alike; and places (k, 2) where these are
+    at fault: at the corners of triangles with too small an angle, or where no mesh could be made.
+    """
+    from img2tri.recipes.poisson_interior import scattered
+    from img2tri.triangles.generate.constrained_delaunay import NetworkError
+    from img2tri.triangles.generate.filling import fill
+    from img2tri.triangles.generate.quality_smoothing import narrow
+
+    chains = coarse.coarse()
+    try:
+        for _ in range(FILLINGS):
+            segments, left, right = chains.segments
+            if slide is None:
+                mesh = scattered(chains, sizes.longest, sizes.field, min_angle=min_angle, seed=seed)
+            else:
+                mesh = fill(
+                    chains.points, segments, left, right, edge_length=sizes.longest, min_angle=min_angle,
+                    gradation=sizes.gradation, size=sizes.field, slide=slide, seed=seed,
+                )  # fmt: skip
+            filled, chains = chains, twins.divided(chains, mesh[0])
+            if chains is filled:
+                break
+    except NetworkError as error:
+        return error, chains, chains.points[segments[error.segments if len(error.segments) else slice(None)]].reshape(-1, 2)
+    vertices, triangles, _ = mesh
+    sharp = narrow(vertices.view(np.complex128)[:, 0], triangles, min_angle - 1e-9)
+    return mesh, chains, vertices[triangles[sharp]].reshape(-1, 2)
+
+
+def _spaced(outlines: Outlines, links: Links, twins: Twins, sizes: Sizes, tolerance: float, keep_corners: bool, keep_area: bool) -> Draft:
+    """Coarsen the outlines to the lengths wanted, spaced evenly.
+
+    A first coarsening shows where pieces have to be shorter than wanted; a second, and if need be a third, spaces them evenly
+    around these places.
+    """
+    z = (outlines.points[:, 0] + 1j * outlines.points[:, 1])[outlines.indices]
+    wanted = twins.shared(limit_growth(_wanted(z, links, sizes), z, links, sizes.gradation))
+
+    def spaced(known: Draft | None) -> Draft:
+        new = draft(outlines, links, spacing=wanted, keep_corners=keep_corners)
+        new = fitted(new, tolerance=tolerance, keep_area=keep_area)
+        return twins.settle(new if known is None or len(twins.one) else remembered(new, known), tolerance=tolerance)
+
+    coarse = spaced(None)
+    for _ in range(RESPACINGS):
+        shorter = twins.shared(limit_growth(by_pieces(coarse, wanted), z, links, sizes.gradation))
+        if (shorter > 0.99 * wanted).all():
+            break
+        wanted = shorter
+        coarse = spaced(coarse)
+    return coarse
+
+
+def _wanted(z: Points, links: Links, sizes: Sizes) -> Floats:
+    """Lengths wanted at the dense points of the outlines, before their growth is limited."""
+    longest = sizes.longest if sizes.boundary is None else min(sizes.longest, sizes.boundary)
+    wanted = np.full(len(z), longest)
+    if sizes.field is not None:
+        wanted = np.minimum(wanted, sizes.field(np.stack([z.real, z.imag], axis=1)))
+    if sizes.elements_across is not None:
+        wanted = np.minimum(wanted, by_thickness(z, links, longest, sizes.elements_across))
+    if sizes.segments_per_turn is not None:
+        wanted = np.minimum(wanted, by_curvature(z, links, longest, sizes.segments_per_turn))
+    return np.asarray(np.maximum(wanted, max(sizes.shortest, LEAST_PIECE)))

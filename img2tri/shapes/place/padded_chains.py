@@ -1,0 +1,83 @@
+"""Chains unrolled on one line, so that smoothing along all of them is one convolution.
+
+Each chain is continued beyond its ends by `reach` points: a ring goes round once more, an open chain is turned by half a
+turn about its end node, which keeps the node where it is and the direction there steady::
+
+    ring      d e [a b c d e] a b          open      . . [A b c D] . .      turned about A and about D
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from img2tri.types import Bools, Floats, Ints
+
+Points = NDArray[np.complex128]
+
+
+class Unrolled:
+    """The entries of `indices` of some chains, continued at both ends.
+
+    Attributes
+    ----------
+    source
+        (k,) the point each place on the line stands for.
+    own
+        (k,) bool, the place belongs to the chain itself, not to a continuation; each crossing has one such place.
+    original
+        (k,) the own place each place repeats.
+    sign
+        (k,) -1 where the chain is turned, else 1.
+    chain
+        (k,) which of the chosen chains it is.
+    ring
+        (k,) bool, the chain is a ring.
+    node
+        (k,) bool, the own places at the ends of open chains.
+    end
+        (k,) the point of the node an open chain is turned about, at its continuations; elsewhere the point itself.
+    """
+
+    def __init__(self, indices: Ints, starts: Ints, rings: Bools, chosen: Bools, reach: int) -> None:
+        chains = np.flatnonzero(chosen)
+        first, ring = starts[:-1][chains], rings[chains]
+        steps = np.diff(starts)[chains] - 1  # from the first point to the last; a ring's last is its first again
+        length = steps + np.where(ring, 0, 1) + 2 * reach
+        which = np.repeat(np.arange(len(chains)), length)
+        begin = (np.cumsum(length) - length)[which] + reach
+        place = np.arange(len(which)) - begin
+        self.own = (place >= 0) & (place < (length - 2 * reach)[which])
+        turns, rest, out = np.zeros_like(place), place.copy(), np.flatnonzero(~self.own)
+        turns[out], rest[out] = np.divmod(place[out], (np.where(ring, 1, 2) * steps)[which[out]])
+        turned = rest > steps[which]
+        along = np.where(turned, 2 * steps[which] - rest, rest)
+        self.source, self.original = indices[first[which] + along], begin + along
+        self.chain, self.ring = which, ring[which]
+        self.node = ~self.ring & ((place == 0) | (place == steps[which]))
+        end = np.where(place < 0, indices[first[which]], indices[first[which] + steps[which]])
+        self.end = np.where(self.own | self.ring, self.source, end)
+        # A turn about the last node Z and one about the first node A move a point by 2 (Z - A).
+        self.sign = np.where(turned, -1.0, 1.0)
+        self._first, self._last = indices[first[which]], indices[first[which] + steps[which]]
+        self._from_first = np.where(ring[which], 0.0, -2.0 * turns)
+        self._from_last = np.where(ring[which], 0.0, 2.0 * turns + 2.0 * turned)
+
+    def points(self, z: Points) -> Points:
+        """Lay points out on the line, (n,) to (k,)."""
+        beyond = np.flatnonzero((self._from_first != 0) | (self._from_last != 0))
+        line: Points = self.sign * z[self.source]
+        line[beyond] += self._from_first[beyond] * z[self._first[beyond]] + self._from_last[beyond] * z[self._last[beyond]]
+        return line
+
+
+def convolve(line: Points, kernel: Floats) -> Points:
+    """Convolve complex values with a real kernel of odd length; the result is as long as `line`."""
+    result: Points = np.convolve(line.real, kernel, "same") + 1j * np.convolve(line.imag, kernel, "same")
+    return result
+
+
+def cross(a: Points, b: Points) -> Floats:
+    """Cross product of plane vectors written as complex numbers."""
+    result: Floats = a.real * b.imag - a.imag * b.real
+    return result

@@ -1,0 +1,147 @@
+"""Which pieces of outlines come too near to each other, or meet at too sharp an angle.
+
+Pieces are chords, each standing for a run of dense points that bulges from it by so much. Two pieces are clear of each other if they
+are farther apart than both bulges, and a gap. Of two pieces that were clear, one has to be *fresh* for them not to be: so only
+what is beside fresh pieces is looked at.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from img2tri.shapes.place.padded_chains import Points, cross
+from img2tri.shapes.simplify.simplification import Draft
+from img2tri.types import Bools, Floats, Ints
+
+GAP = 0.25  # px, the least distance kept between pieces, over their bulges
+FEW = 2**17  # pairs: rather looked at one by one than found in trees
+SHARP = np.cos(np.radians(50.0))  # pieces that meet at less than this angle are too sharp
+
+
+def sharp_pieces(d: Draft, first: Ints, last: Ints, fresh: Bools) -> Bools:
+    """Tell which pieces meet another one at a sharp angle, at least one of the two being fresh."""
+    n, at, place = len(first), d.outlines.indices, d.places
+    touched = np.zeros(len(d.dense), bool)
+    touched[at[first[fresh]]] = touched[at[last[fresh]]] = True
+    # All ends of pieces at these points, those at the same point one after the other.
+    point = at[np.concatenate([first, last])]
+    end = np.flatnonzero(touched[point])
+    end = end[np.argsort(point[end], kind="stable")]
+    point, piece = point[end], end % n
+    heading = (place[last[piece]] - place[first[piece]]) * np.where(end < n, 1, -1)
+    length = np.abs(heading)
+    sharp = np.zeros(n, bool)
+    for step in range(1, len(end)):
+        one = np.flatnonzero(point[step:] == point[:-step])
+        if not len(one):
+            break
+        other = one + step
+        narrow = (heading[one] * heading[other].conj()).real > SHARP * length[one] * length[other]
+        sharp[piece[one[narrow]]] = sharp[piece[other[narrow]]] = True
+    return sharp
+
+
+def crowded_pieces(d: Draft, first: Ints, last: Ints, fresh: Bools) -> Bools:
+    """Tell which pieces come too near to another one that is not their neighbour, at least one of the two being fresh."""
+    at, place, bulge = d.outlines.indices, d.places, d.bulge[first]
+    a, b = place[first], place[last]
+    i, j = _within(a, b, GAP / 2 + bulge, fresh)
+    head, tail = at[first], at[last]
+    apart = (head[i] != head[j]) & (head[i] != tail[j]) & (tail[i] != head[j]) & (tail[i] != tail[j])
+    i, j = i[apart], j[apart]
+    distance = _distance(a[i], b[i], a[j], b[j])
+    near = np.flatnonzero(distance < GAP + bulge[i] + bulge[j])
+    i, j, distance = i[near], j[near], distance[near]
+    # Along the same chain two pieces are only near if the way between them is long for that.
+    crowded = np.zeros(len(first), bool)
+    if len(i):
+        long = _way_between(d, first, last, i, j) > np.maximum(4 * distance, 1.0)
+        crowded[i[long]] = crowded[j[long]] = True
+    return crowded
+
+
+def _within(a: Points, b: Points, reach: Floats, fresh: Bools) -> tuple[Ints, Ints]:
+    """Pairs of segments whose boxes, each widened by its `reach`, meet, at least one of them fresh; each pair once."""
+    middle, wide, high = (a + b) / 2, np.abs((b - a).real) / 2 + reach, np.abs((b - a).imag) / 2 + reach
+    few = np.count_nonzero(fresh) * len(fresh) <= FEW
+    i, j = (_beside if few else _near)(middle, np.maximum(wide, high), fresh)
+    away = middle[i] - middle[j]
+    meet = (fresh[i] | fresh[j]) & (np.abs(away.real) <= wide[i] + wide[j]) & (np.abs(away.imag) <= high[i] + high[j])
+    return i[meet], j[meet]
+
+
+def _beside(middle: Points, half: Floats, fresh: Bools) -> tuple[Ints, Ints]:
+    """Pairs of squares around their middles that meet, one of them fresh, each pair once: found by looking at all."""
+    chosen = np.flatnonzero(fresh)
+    room = half[chosen, None] + half
+    meet = (np.abs(middle.real[chosen, None] - middle.real) <= room) & (np.abs(middle.imag[chosen, None] - middle.imag) <= room)
+    i, j = np.nonzero(meet)
+    i = chosen[i]
+    once = (i < j) | ~fresh[j]
+    return i[once], j[once]
+
+
+def _near(middle: Points, half: Floats, fresh: Bools) -> tuple[Ints, Ints]:
+    """Pairs of squares that may meet, each once, found in trees: one for each class of sizes, as a few large ones make all look far."""
+    from scipy.spatial import cKDTree
+
+    places, chosen = np.stack([middle.real, middle.imag], axis=1), np.flatnonzero(fresh)
+    size = 4.0 ** np.ceil(np.log2(half) / 2)
+    # A tree for each class; where few segments are fresh, of those only that are anywhere near them.
+    classes = []
+    for largest in np.unique(size).tolist():
+        own = np.flatnonzero(size == largest)
+        if len(chosen) < len(fresh):
+            some, last = np.concatenate([own, chosen]), np.arange(len(own) + len(chosen)) >= len(own)
+            own = own[_around(middle[some], largest + half[chosen].max(), last)[: len(own)]]
+        classes.append((largest, own, cKDTree(places[own], balanced_tree=False, compact_nodes=False)))
+    found = [np.zeros((2, 0), np.int64)]
+    for k, (one, segments, tree) in enumerate(classes):
+        found.append(segments[tree.query_pairs(2 * one, p=np.inf, output_type="ndarray").T])
+        for other, others, beside in classes[k + 1 :]:
+            pairs = tree.sparse_distance_matrix(beside, one + other, p=np.inf, output_type="ndarray")
+            found.append(np.stack([segments[pairs["i"]], others[pairs["j"]]]))
+    i, j = np.concatenate(found, axis=1)
+    return i, j
+
+
+def _around(middles: Points, reach: float, chosen: Bools) -> Bools:
+    """Tell which places may be within reach of the chosen ones: those in the same square of a grid, or in one beside it."""
+    column, row = (np.floor((part - part.min()) / reach).astype(np.int64) + 1 for part in (middles.real, middles.imag))
+    width = int(column.max()) + 2
+    square = row * width + column
+    marked = np.zeros((int(row.max()) + 2) * width, bool)
+    hit = np.unique(square[chosen])
+    for beside in (-width - 1, -width, 1 - width, -1, 0, 1, width - 1, width, width + 1):
+        marked[hit + beside] = True
+    return np.asarray(marked[square])
+
+
+def _distance(a: Points, b: Points, c: Points, d: Points) -> Floats:
+    """Distance between segments from a to b and from c to d; 0 where they cross."""
+    crossing = cross(b - a, c - a) * cross(b - a, d - a) < 0
+    crossing &= cross(d - c, a - c) * cross(d - c, b - c) < 0
+    least = np.minimum(to_segment(a, c, d), to_segment(b, c, d))
+    least = np.minimum(least, np.minimum(to_segment(c, a, b), to_segment(d, a, b)))
+    return np.where(crossing, 0, least)
+
+
+def to_segment(p: Points, a: Points, b: Points) -> Floats:
+    """Distance of points to segments from a to b."""
+    along, off = b - a, p - a
+    square = np.maximum(along.real**2 + along.imag**2, 1e-300)
+    share = np.clip((off.real * along.real + off.imag * along.imag) / square, 0, 1)
+    return np.asarray(np.abs(off - share * along))
+
+
+def _way_between(d: Draft, first: Ints, last: Ints, i: Ints, j: Ints) -> Floats:
+    """Length of the chain between two pieces, infinite if they lie on different chains."""
+    z, starts, chain = d.dense[d.outlines.indices], d.outlines.starts, d.links.chain
+    arc = np.concatenate([[0], np.cumsum(np.abs(np.diff(z)))])
+    early, late = np.minimum(first[i], first[j]), np.maximum(first[i], first[j])
+    end = np.where(first[i] < first[j], last[i], last[j])
+    way = arc[late] - arc[end]
+    on = chain[early]
+    around = arc[starts[on + 1] - 1] - arc[starts[on]] - (arc[np.maximum(last[i], last[j])] - arc[early])
+    way = np.where(d.links.rings[on], np.minimum(way, around), way)
+    return np.where(chain[early] == chain[late], way, np.inf)

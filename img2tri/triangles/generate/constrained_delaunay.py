@@ -1,0 +1,250 @@
+"""Constrained Delaunay triangulation, and the proof that its faces are the regions they should be.
+
+In: points, segments that must appear as edges, and the regions on the left and right of each segment. Out: triangles, each with its
+region. The triangulation itself is pythoncdt's (exact predicates). The regions are found by flooding: triangles joined across edges
+that are no segments make a face, and every segment casts two votes, one for the face on each of its sides. If all votes agree, each
+region lies on the side of its outlines where it belongs, whatever was done to the outlines before; if not, two outlines have
+changed sides or crossed, and `NetworkError` says where.
+
+Libraries offer to erase "outer triangles and holes" by counting how many outlines surround them. Votes are safer, as they check;
+they serve any number of regions; and they are faster.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import pythoncdt
+from numpy.typing import ArrayLike, NDArray
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components
+
+from img2tri.errors import MeshError
+from img2tri.types import Floats, Ints
+
+SUPER = 3  # pythoncdt puts the corners of one triangle around everything before the vertices it was given
+
+
+class NetworkError(MeshError):
+    """Points and segments are no planar network, or the regions named by segments around one face differ.
+
+    Attributes
+    ----------
+    segments
+        The segments at fault, as far as they are known: those of the outvoted side of a face.
+    """
+
+    def __init__(self, message: str, segments: ArrayLike = ()) -> None:
+        super().__init__(message)
+        self.segments: Ints = np.asarray(segments, np.int64)
+
+
+def triangulate(points: Floats, segments: Ints, left: Ints, right: Ints) -> tuple[Ints, Ints]:
+    """Triangulate the regions of a network of segments.
+
+    Every point of a region other than 0 is a vertex, every segment an edge; apart from that the triangles are Delaunay.
+
+    Parameters
+    ----------
+    points : (n, 2) float64
+        All different.
+    segments : (s, 2) int64
+        Index pairs into `points`. Segments meet in their end points only, and no other point lies on them.
+    left, right : (s,) int64
+        Region on either side of each segment, seen from its first point to its second; 0 is not meshed.
+
+    Returns
+    -------
+    triangles : (m, 3) int64
+        Counter-clockwise; none in region 0.
+    regions : (m,) int64
+        The region of each triangle.
+
+    Raises
+    ------
+    NetworkError
+        If segments cross, points coincide, or the regions contradict each other.
+
+    Examples
+    --------
+    A square of region 7, its outline running counter-clockwise, with a point in the middle:
+
+    >>> square = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0.5, 0.5]])
+    >>> outline = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
+    >>> triangles, regions = triangulate(square, outline, np.full(4, 7), np.zeros(4, int))
+    >>> len(triangles), regions
+    (4, array([7, 7, 7, 7]))
+    """
+    check_network(points, segments, left, right)
+    triangulation = _insert(points, segments)
+    triangles, regions = _label(triangulation, len(points), segments, left, right)
+    inside = np.flatnonzero(regions)
+    return triangles[inside], regions[inside]
+
+
+@dataclass(frozen=True, eq=False)
+class Refined:
+    """A triangulation with points added.
+
+    Attributes
+    ----------
+    vertices
+        (v, 2) float64: the given points, then those added.
+    triangles, regions
+        As from `triangulate`.
+    segments
+        (p, 2) int64, segments and pieces of split segments, running the way of the segment.
+    origin
+        (p,) int64, the segment each is, or is a piece of.
+    """
+
+    vertices: Floats
+    triangles: Ints
+    regions: Ints
+    segments: Ints
+    origin: Ints
+
+
+def refine(points: Floats, segments: Ints, left: Ints, right: Ints, min_angle: float, min_edge: float) -> Refined:
+    """Triangulate as `triangulate` does, then add points until every angle is `min_angle` (Ruppert's refinement).
+
+    Points are added at circumcentres, and in the middle of segments, which are thereby split. Where two segments meet in
+    a sharper corner than about 60 degrees, or the shortest edges would become shorter than `min_edge`, angles may stay below.
+
+    Parameters
+    ----------
+    points, segments, left, right
+        As for `triangulate`.
+    min_angle : float
+        Degrees. Above 30 or so the refinement needs very many points or does not reach it.
+    min_edge : float
+        No edge shorter than this is split; smaller values reach the angle in more places, with more triangles.
+
+    Notes
+    -----
+    J. Ruppert, A Delaunay refinement algorithm for quality 2-dimensional mesh generation, J. Algorithms 18, 1995.
+    """
+    check_network(points, segments, left, right)
+    triangulation = _insert(points, segments)
+    _, regions = _label(triangulation, len(points), segments, left, right)
+    outside = set(np.flatnonzero(regions == 0).tolist())
+    budget = 20 * len(points) + 10_000
+    by_angle = pythoncdt.RefinementCriterion.SMALLEST_ANGLE
+    triangulation.refine_triangles(budget, by_angle, math.radians(min_angle), outside, min_edge)
+    corners = triangulation.vertices_array()[SUPER:]
+    vertices = np.stack([corners["x"], corners["y"]], axis=1)
+    pieces, whole = _pieces(triangulation, vertices, segments)
+    triangles, regions = _label(triangulation, len(vertices), pieces, left[whole], right[whole])
+    inside = np.flatnonzero(regions)
+    return Refined(vertices, triangles[inside], regions[inside], pieces, whole)
+
+
+def check_network(points: Floats, segments: Ints, left: Ints, right: Ints) -> None:
+    """Check what can be told of a network without triangulating it: shapes, finite coordinates, indices, segments of no length."""
+    if points.ndim != 2 or points.shape[1] != 2 or not np.isfinite(points).all():
+        raise NetworkError(f"points: expected finite coordinates (n, 2), found shape {points.shape}, or NaN or infinity in them")
+    if segments.ndim != 2 or segments.shape[1] != 2 or not (left.shape == right.shape == segments.shape[:1]):
+        raise NetworkError(f"segments, left, right: expected (s, 2), (s,), (s,), found {segments.shape}, {left.shape}, {right.shape}")
+    if len(segments) and not (segments.min() >= 0 and segments.max() < len(points)):
+        raise NetworkError(f"segments: expected indices of {len(points)} points, found {segments.min()} to {segments.max()}")
+    none = (points[segments[:, 0]] == points[segments[:, 1]]).all(axis=1)
+    if none.any():
+        raise NetworkError("segments: expected two different points each", np.flatnonzero(none))
+
+
+def _insert(points: Floats, segments: Ints) -> pythoncdt.Triangulation:
+    """Triangulate; the outer triangles and holes are still there."""
+    triangulation = pythoncdt.Triangulation(pythoncdt.VertexInsertionOrder.AUTO, pythoncdt.IntersectingConstraintEdges.NOT_ALLOWED, 0.0)
+    try:
+        # Arrays are buffers, though before Python 3.12 type checkers cannot know.
+        triangulation.insert_vertices(np.ascontiguousarray(points, np.float64))  # type: ignore[call-overload, unused-ignore]
+        triangulation.insert_edges(np.ascontiguousarray(segments, np.uint32))  # type: ignore[call-overload, unused-ignore]
+    except RuntimeError as error:
+        raise NetworkError(f"points and segments: expected a planar network, found: {error}") from error
+    return triangulation
+
+
+def _label(triangulation: pythoncdt.Triangulation, n: int, segments: Ints, left: Ints, right: Ints) -> tuple[Ints, Ints]:
+    """All triangles, also those of region 0, and the regions that the segments vote for."""
+    table = triangulation.triangles_array(copy=False)
+    triangles, neighbours = table["vertices"].astype(np.int64) - SUPER, table["neighbors"].view(np.int32)
+    a, b, c = triangles.T
+    outer = np.flatnonzero((a < 0) | (b < 0) | (c < 0))
+    edges, owners, votes = _votes(triangles, n, segments, left, right)
+    faces = _faces(neighbours, edges)
+    # Every face takes the label one of its voters names; the face around everything, 0.
+    region = np.zeros(faces.max() + 1, np.int64)
+    region[faces[edges // 3]] = votes
+    region[faces[outer]] = 0
+    wrong = region[faces[edges // 3]] != votes
+    if wrong.any():
+        at_fault = np.unique(owners[wrong])
+        raise NetworkError(f"left and right: expected one region on each face, found {len(at_fault)} segments that disagree", at_fault)
+    return triangles, region[faces]
+
+
+def _votes(triangles: Ints, n: int, segments: Ints, left: Ints, right: Ints) -> tuple[Ints, Ints, Ints]:
+    r"""Find the segments in the triangulation, as edges 3 t + k; return these, their segments, their votes for triangle t.
+
+    Edge 3 t + k runs from corner k of triangle t to the next corner and has t on its left::
+
+              2
+             / \
+            2   1       numbers inside: edges
+           /  0  \
+          0-------1     numbers outside: corners
+    """
+    in_network = np.zeros(n + SUPER, bool)
+    in_network[segments] = True  # a corner of the outermost triangle has a negative index: one of the last, which stay False
+    start = triangles.ravel()
+    stop = triangles[:, [1, 2, 0]].ravel()
+    edges = np.flatnonzero(in_network[start] & in_network[stop])
+    # One number per directed edge: those of the segments, and those of the segments turned round.
+    known = np.concatenate([segments[:, 0] * n + segments[:, 1], segments[:, 1] * n + segments[:, 0]])
+    order = np.argsort(known)
+    known = known[order]
+    wanted = start[edges] * n + stop[edges]
+    found = np.minimum(np.searchsorted(known, wanted), len(known) - 1)
+    hit = known[found] == wanted
+    edges, found = edges[hit], order[found[hit]]
+    if len(edges) != len(known):
+        raise NetworkError("segments: expected each once, and no point on them")
+    return edges, found % len(segments), np.concatenate([left, right])[found]
+
+
+def _faces(neighbours: NDArray[np.int32], walls: Ints) -> Ints:
+    """Give each face a number: triangles joined across edges that are no walls. A neighbour of -1 is none."""
+    passable = neighbours >= 0
+    passable.ravel()[walls] = False
+    ends = np.zeros(len(neighbours) + 1, np.int32)
+    a, b, c = passable.view(np.int8).T
+    np.cumsum(a + b + c, out=ends[1:])
+    beyond = neighbours[passable]
+    graph = csr_array((np.ones(len(beyond)), beyond, ends), shape=(len(neighbours),) * 2)
+    # Its links all go both ways: strongly connected is connected, and found without a transposed copy.
+    return connected_components(graph, connection="strong")[1].astype(np.int64)
+
+
+def _pieces(triangulation: pythoncdt.Triangulation, vertices: Floats, segments: Ints) -> tuple[Ints, Ints]:
+    """Segments and pieces of segments after refinement, and which segment each belongs to. Loops over split segments only."""
+    index = {(lower, upper): i for i, (lower, upper) in enumerate(np.sort(segments, axis=1).tolist())}
+    parent = {_ends(piece): _ends(of[0]) for piece, of in triangulation.piece_to_originals_iter()}
+    edges = [_ends(edge) for edge in triangulation.fixed_edges_iter()]
+    whole = np.zeros(len(edges), np.int64)
+    for i, edge in enumerate(edges):
+        while edge not in index:
+            edge = parent[edge]
+        whole[i] = index[edge]
+    pieces = np.array(edges, np.int64).reshape(-1, 2)
+    # pythoncdt orders the ends of an edge by number: turn the pieces to run along their segment.
+    along = vertices[pieces[:, 1]] - vertices[pieces[:, 0]]
+    direction = vertices[segments[whole, 1]] - vertices[segments[whole, 0]]
+    turned = (along * direction).sum(axis=1) < 0
+    pieces[turned] = pieces[turned, ::-1]
+    return pieces, whole
+
+
+def _ends(edge: pythoncdt.Edge) -> tuple[int, int]:
+    return edge.v1 - SUPER, edge.v2 - SUPER

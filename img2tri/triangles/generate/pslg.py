@@ -1,0 +1,134 @@
+"""The network of outlines, and its segments divided to the wanted edge length."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from img2tri.triangles.generate.graded_lattice import Sizes
+from img2tri.triangles.generate.hexagonal_lattice import Complex
+from img2tri.triangles.generate.quality_smoothing import Rails
+from img2tri.types import Floats, Ints
+
+ROUND_UP = 0.4  # a segment of n + this many wanted lengths or more is divided into n + 1 parts
+
+
+@dataclass(frozen=True, eq=False)
+class Network:
+    """Points joined by segments, with the regions on both sides.
+
+    Attributes
+    ----------
+    points
+        (n,) complex.
+    segments
+        (s, 2) int64.
+    left, right
+        (s,) int64, codes of the regions: small numbers, 0 for what is not meshed.
+    origin
+        (s,) int64, which of the segments given by the caller each is, or is a part of; -1 for none.
+    """
+
+    points: Complex
+    segments: Ints
+    left: Ints
+    right: Ints
+    origin: Ints
+
+    @property
+    def ends(self) -> tuple[Complex, Complex]:
+        """First and last point of each segment."""
+        return self.points[self.segments[:, 0]], self.points[self.segments[:, 1]]
+
+    @property
+    def middles(self) -> Complex:
+        """Middle of each segment."""
+        start, stop = self.ends
+        return (start + stop) / 2
+
+    @property
+    def lengths(self) -> Floats:
+        """Length of each segment."""
+        start, stop = self.ends
+        return np.abs(stop - start)
+
+    def divided(self, sizes: Sizes) -> tuple[Network, Floats, Floats]:
+        """Divide segments that are too long for the wanted length, with parts that grow as it does. The points stay the first ones.
+
+        Also return the wanted length at the points, and at the middles of the segments.
+
+        From either end to the middle the wanted length is taken as linear, from a to b. Then a stretch of length l holds
+        l log(b / a) / (b - a) wanted lengths, and parts of equal share grow in geometric progression.
+        """
+        at_points, at_middles = sizes.at(self.points), sizes.at(self.middles)
+        first, last = at_points[self.segments].T
+        half = self.lengths / 2
+        first_share, last_share = half / _log_mean(first, at_middles), half / _log_mean(last, at_middles)
+        shares = first_share + last_share
+        parts = np.maximum(1, np.ceil(shares - ROUND_UP)).astype(np.int64)
+        if not len(parts) or parts.max() == 1:
+            return self, at_points, at_middles
+        of, part = runs(parts)
+        new = np.flatnonzero(part > 0)
+        share = (part / parts[of] * shares[of])[new]
+        # Measured from the nearer end, in shares of the half on this side.
+        head = share < first_share[of[new]]
+        end = np.where(head, first[of[new]], last[of[new]])
+        within = np.where(head, share / first_share[of[new]], (shares[of[new]] - share) / last_share[of[new]])
+        way = _geometric(within, at_middles[of[new]] / end) / 2
+        start, stop = self.ends
+        points = start[of[new]] + (stop - start)[of[new]] * np.where(head, way, 1 - way)
+        segments = self.segments[of]
+        segments[new, 0] = segments[new - 1, 1] = len(self.points) + np.arange(len(new))
+        network = Network(np.concatenate([self.points, points]), segments, self.left[of], self.right[of], self.origin[of])
+        at_middles = at_middles[of]
+        changed = np.flatnonzero(parts[of] > 1)
+        at_middles[changed] = sizes.at(network.middles[changed])
+        return network, np.concatenate([at_points, sizes.at(points)]), at_middles
+
+    def rails(self, room: Floats) -> Rails:
+        """Let the first points slide, by so much, parallel to the line between their neighbours; but not where segments were divided."""
+        start, stop = self.segments.T
+        before, after = np.zeros((2, len(self.points)), np.complex128)
+        before[stop], after[start] = self.points[start], self.points[stop]
+        own = self.origin >= 0
+        divided = own & (np.bincount(self.origin[own])[self.origin] > 1)
+        stays = np.zeros(len(self.points), bool)
+        stays[self.segments[divided]] = True
+        at = np.flatnonzero((room > 0) & ~stays[: len(room)])
+        along = after[at] - before[at]
+        return Rails(at, along / np.abs(along), self.points[at], room[at])
+
+    def joined(self, points: Complex, segments: Ints, right: Ints) -> Network:
+        """Add points, and segments between these, with nothing meshed on their left."""
+        none = np.zeros(len(segments), np.int64)
+        return Network(
+            points=np.concatenate([self.points, points]),
+            segments=np.concatenate([self.segments, segments + len(self.points)]),
+            left=np.concatenate([self.left, none]),
+            right=np.concatenate([self.right, right]),
+            origin=np.concatenate([self.origin, none - 1]),
+        )
+
+
+def runs(counts: Ints) -> tuple[Ints, Ints]:
+    """Return, for counts 2, 1, 3, the number of the run 0 0 1 2 2 2 and the place in the run 0 1 0 0 1 2."""
+    of = np.repeat(np.arange(len(counts)), counts)
+    return of, np.arange(len(of)) - np.repeat(np.cumsum(counts) - counts, counts)
+
+
+def _log_mean(a: Floats, b: Floats) -> Floats:
+    """Logarithmic mean (b - a) / log(b / a), which is a where b is."""
+    x = np.log(b / a)
+    small = np.abs(x) < 1e-5
+    mean: Floats = a * np.where(small, 1 + x / 2, np.expm1(x) / np.where(small, 1, x))
+    return mean
+
+
+def _geometric(share: Floats, ratio: Floats) -> Floats:
+    """Part of the way after a share of steps that grow by `ratio` from the first to the last."""
+    x = np.log(ratio)
+    small = np.abs(x) < 1e-5
+    way: Floats = np.where(small, share, np.expm1(share * x) / np.where(small, 1, np.expm1(x)))
+    return way

@@ -1,0 +1,236 @@
+"""MSH and BDF read back: the bytes of a file -> cells of one kind, with regions, names, and the facets of each set.
+
+What img2tri writes is read completely. Of the files of other programs, those in text are read whose cells of highest dimension are all
+triangles or all wedges, linear or quadratic.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from img2tri.errors import MeshError
+from img2tri.types import Floats, Ints
+from img2tri.views.formats.solvers import bdf, msh
+
+# Number of nodes of each of Gmsh's types of element.
+_NODES = (0, 2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27, 18, 14, 1, 8, 20, 15, 13)
+_GMSH = {number: kind for kind, number in msh.TYPES.items()}
+_NASTRAN = {("CTRIA3", 3): "triangle", ("CTRIA6", 6): "triangle6", ("CPENTA", 6): "wedge", ("CPENTA", 15): "wedge15"}
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """What a file holds.
+
+    Attributes
+    ----------
+    points
+        (p, 3) float64.
+    cells, kind
+        As in `img2tri.views.objects.cells.Cells`.
+    regions
+        (m,) int64, the number of each cell's physical group or property, or the label in its name; 0 without one.
+    names
+        Label -> name of the region; those without a name are missing.
+    facets
+        Name of each set -> the nodes of its facets, (k, 2 to 8) int64, or, where a format knows sets of nodes only, its nodes (k, 1).
+    """
+
+    points: Floats
+    cells: Ints
+    kind: str
+    regions: Ints
+    names: dict[int, str]
+    facets: dict[str, Ints]
+
+
+# Dimension, physical group, Gmsh's type, and rows that hold the number of an element and those of its nodes.
+_Blocks = list[tuple[int, int, int, Ints]]
+
+
+def read_msh(data: bytes) -> Found:
+    """Read MSH 2.2 or 4.1 in text.
+
+    Raises
+    ------
+    MeshError
+        If there are no cells of a kind that is read, or several kinds.
+    ValueError, KeyError, IndexError
+        If the file is damaged, in binary, or no MSH.
+    """
+    sections = dict(re.findall(r"^\$(\w+)\s*\n(.*?)^\$End\1\s*$", data.decode(), re.DOTALL | re.MULTILINE))
+    version, binary, _ = sections["MeshFormat"].split()
+    if version not in msh.VERSIONS or binary != "0":
+        raise ValueError(f"expected MSH 2.2 or 4.1 in text, found {version} in {'text' if binary == '0' else 'binary'}")
+    numbers, points, blocks = (_version_4 if version == "4.1" else _version_2)(sections)
+    place = np.full(int(numbers.max(initial=0)) + 1, -1)
+    place[numbers] = np.arange(len(numbers))
+    names = {
+        (int(dimension), int(group)): name
+        for dimension, group, name in re.findall(r'^\s*(\d+)\s+(\d+)\s+"(.*)"\s*$', sections.get("PhysicalNames", ""), re.MULTILINE)
+    }
+    top = max((dimension for dimension, *_ in blocks), default=0)
+    inside = [(_GMSH.get(number, ""), group, rows) for dimension, group, number, rows in blocks if dimension == top]
+    kind, table = _one_kind([(kind, np.insert(rows, 1, group, axis=1)) for kind, group, rows in inside])
+    facets = defaultdict(list)
+    for dimension, group, _, rows in blocks:
+        if dimension == top - 1 and (dimension, group) in names:
+            facets[names[dimension, group]].append(place[rows[:, 1:]])
+    alike = {name: np.concatenate(parts) for name, parts in facets.items() if len({part.shape[1] for part in parts}) == 1}
+    called = {group: name for (dimension, group), name in names.items() if dimension == top}
+    return _whole(points, table, place, kind, msh.ORDERS, called, alike)
+
+
+def read_bdf(data: bytes) -> Found:
+    """Read the bulk data of Nastran: GRID, triangles or wedges, SET1, and names in the comments of HyperMesh.
+
+    Raises
+    ------
+    MeshError
+        If there are no cells of a kind that is read, or several kinds.
+    ValueError, KeyError, IndexError
+        If the file is damaged, or no bulk data.
+    """
+    text = data.decode()
+    places: dict[int, list[float]] = {}
+    rows: dict[str, list[list[int]]] = defaultdict(list)
+    sets: dict[int, list[int]] = {}
+    for card, *fields in _cards(text):
+        if card == "GRID":
+            places[int(fields[0])] = [_real(field) for field in fields[2:5]]
+        elif card in {name for name, _ in _NASTRAN}:
+            row = [int(field) for field in fields if field]
+            rows[_NASTRAN[card, len(row) - 2]].append(row)
+        elif card == "SET1":
+            sets[int(fields[0])] = [int(field) for field in fields[1:] if field]
+    kind, table = _one_kind([(kind, np.array(row)) for kind, row in rows.items()])
+    numbers = np.array(sorted(places))
+    place = np.full(int(numbers.max(initial=0)) + 1, -1)
+    place[numbers] = np.arange(len(numbers))
+    called = {int(number): name for number, name in re.findall(r'^\$HMNAME COMP\s+(\d+)\s*"(.*?)"', text, re.MULTILINE)}
+    known = {int(number): name for number, name in re.findall(r'^\$HMSET\s+(\d+)\s+1\s*"(.*?)"', text, re.MULTILINE)}
+    nodes = {known[number]: place[members][:, None] for number, members in sets.items() if number in known}
+    return _whole(np.array([places[number] for number in numbers.tolist()]), table, place, kind, bdf.ORDERS, called, nodes)
+
+
+def by_text(data: bytes, suffix: str) -> tuple[Floats, Ints, Ints]:
+    """Read points (p, 3), triangles (k, 3) and regions (k,) of .msh or .bdf.
+
+    Raises
+    ------
+    MeshError
+        If the cells are no linear triangles.
+    ValueError, KeyError, IndexError
+        If the file is damaged, or of another kind.
+    """
+    found = READERS[suffix](data)
+    if found.kind != "triangle":
+        raise MeshError(f"expected triangles of three nodes, found {found.kind}")
+    return found.points, found.cells, found.regions
+
+
+def _whole(
+    points: Floats, table: Ints, place: Ints, kind: str, orders: dict[str, list[int]], names: dict[int, str], facets: dict[str, Ints]
+) -> Found:
+    """Put together what was read; `table` has for each cell its number, that of its region, and those of its nodes, in `orders`."""
+    table = table[np.argsort(table[:, 0], kind="stable")]
+    cells = place[table[:, 2:]][:, np.argsort(orders[kind]) if kind in orders else slice(None)]
+    if any(rows.min(initial=0) < 0 for rows in (cells, *facets.values())):
+        raise ValueError("it has cells with nodes that are not there")
+    numbers, which = np.unique(table[:, 1], return_inverse=True)
+    # A region that has no name of its own is called by its label, which may be below 1 though its number is not.
+    own = {number: re.fullmatch(r"region_(-?\d+)", name) for number, name in names.items()}
+    labels = {number: int(match[1]) if (match := own.get(number)) else number for number in numbers.tolist()}
+    called = {labels[number]: name for number, name in names.items() if number in labels}
+    return Found(points, cells, kind, np.array([labels[number] for number in numbers.tolist()])[which], called, facets)
+
+
+def _one_kind(parts: list[tuple[str, NDArray[Any]]]) -> tuple[str, NDArray[Any]]:
+    """Return the kind of all cells, and the cells."""
+    kinds = {kind for kind, _ in parts}
+    if len(kinds) != 1 or "" in kinds:
+        raise MeshError("expected cells that are all triangles or all wedges, found " + ("others" if kinds else "none"))
+    return kinds.pop(), np.concatenate([rows for _, rows in parts])
+
+
+def _version_4(sections: dict[str, str]) -> tuple[Ints, Floats, _Blocks]:
+    """Return the numbers of the nodes, their places, and the blocks of elements."""
+    words = iter(map(float, sections.get("Entities", "0 0 0 0").split()))
+    group = {}
+    for dimension, count in enumerate([int(next(words)) for _ in range(4)]):
+        for _ in range(count):
+            number = int(next(words))
+            for _ in range(6 if dimension else 3):
+                next(words)
+            groups = [int(next(words)) for _ in range(int(next(words)))]
+            for _ in range(int(next(words)) if dimension else 0):
+                next(words)
+            group[dimension, number] = groups[0] if groups else 0
+    values = np.array(sections["Nodes"].split(), np.float64)
+    count, at, numbers, points = int(values[0]), 4, [np.zeros(0, np.int64)], [np.zeros((0, 3))]
+    for _ in range(count):
+        dimension, _, parametric, n = values[at : at + 4].astype(np.int64)
+        width = 3 + int(parametric) * int(dimension)
+        numbers.append(values[at + 4 : at + 4 + n].astype(np.int64))
+        points.append(values[at + 4 + n : at + 4 + n * (1 + width)].reshape(n, width)[:, :3])
+        at += 4 + n * (1 + width)
+    whole = np.array(sections["Elements"].split(), np.int64)
+    count, at, blocks = int(whole[0]), 4, []
+    for _ in range(count):
+        dimension, entity, kind, n = whole[at : at + 4].tolist()
+        rows = whole[at + 4 : at + 4 + n * (1 + _NODES[kind])].reshape(n, 1 + _NODES[kind])
+        blocks.append((dimension, group.get((dimension, entity), 0), kind, rows))
+        at += 4 + rows.size
+    order = np.argsort(all_numbers := np.concatenate(numbers), kind="stable")
+    return all_numbers[order], np.concatenate(points)[order], blocks
+
+
+def _version_2(sections: dict[str, str]) -> tuple[Ints, Floats, _Blocks]:
+    """Return the numbers of the nodes, their places, and the blocks of elements."""
+    nodes = np.array(sections["Nodes"].split()[1:], np.float64).reshape(-1, 4)
+    rows: dict[tuple[int, int], list[list[int]]] = defaultdict(list)
+    for line in sections["Elements"].splitlines()[1:]:
+        numbers = [int(word) for word in line.split()]
+        rows[numbers[1], numbers[3] if numbers[2] else 0].append([numbers[0], *numbers[3 + numbers[2] :]])
+    blocks = [(_DIMENSIONS[kind], group, kind, np.array(elements)) for (kind, group), elements in rows.items()]
+    return nodes[:, 0].astype(np.int64), nodes[:, 1:], blocks
+
+
+_DIMENSIONS = {**dict.fromkeys((15,), 0), **dict.fromkeys((1, 8), 1), **dict.fromkeys((2, 3, 9, 10, 16), 2)}
+_DIMENSIONS |= {kind: 3 for kind in range(1, len(_NODES)) if kind not in _DIMENSIONS}
+
+
+def _cards(text: str) -> Iterator[list[str]]:
+    """Cut bulk data into cards: the name without a star, and its fields, those of continuation lines included."""
+    card: list[str] = []
+    for line in text.splitlines():
+        if not line.strip() or line.startswith("$"):
+            continue
+        if "," in line:
+            fields = [field.strip() for field in line.split(",")][:9]
+        else:
+            width = 16 if line[:8].rstrip().endswith("*") else 8
+            fields = [line[:8].strip(), *(line[i : i + width].strip() for i in range(8, 72, width))]
+        if fields[0].strip("+*") == "" or fields[0].startswith("+"):
+            card += fields[1:]
+        else:
+            if card:
+                yield card
+            card = [fields[0].rstrip("*").upper(), *fields[1:]]
+    if card:
+        yield card
+
+
+def _real(text: str) -> float:
+    """Read a number as Nastran writes it: an exponent may follow behind a D, or no letter at all; nothing is 0."""
+    return float(re.sub(r"(?<=[\d.])D?([+-]?\d+)$", r"E\1", text) if re.search(r"[\d.](D|[+-]\d)", text) else text or 0)
+
+
+READERS = {".msh": read_msh, ".bdf": read_bdf}

@@ -1,0 +1,225 @@
+r"""The named parts of a mesh: triangles with their regions, and the frame of the image -> what each edge is called.
+
+Regions have the user's names, or such as ``region_3``. Each edge on the boundary of the mesh or between two regions belongs to one set, the
+first of these that fits:
+
+1. ``left``, ``right``, ``bottom``, ``top``: it lies on that side of the frame of the image; bottom is where y is least.
+2. ``hole_1``, ``hole_2``...: it bounds a hole; the largest hole comes first.
+3. ``outer``: it bounds the mesh otherwise. With the sides of the frame, this is all of the outer boundary.
+4. ``bone__cartilage``: on either side is a region; the one with the lower label comes first.
+
+So no edge is in two sets, as solvers want it that give each facet one tag. The tags are the same in every format, whichever sets there are:
+left 1, right 2, bottom 3, top 4, outer 5, the holes from 6, then the interfaces by their labels.
+
+An edge is a side of a triangle. Sides are numbered by the corner they begin in, as in `img2tri.views.objects.edges`, and side 3 t + k is
+side k of
+triangle t. Its twin is the same edge seen from the other triangle; a boundary ring is followed by going round its vertices from twin to
+twin, so that where a mesh touches itself in one vertex only, its parts stay apart, as they are for the pixels.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from img2tri.errors import MeshError, ParameterError
+from img2tri.types import Bools, Floats, Ints
+from img2tri.views.objects.bodies import unique_names
+
+FRAME = ("left", "right", "bottom", "top")
+OUTER = "outer"
+_FLAT = 1e-9  # how far from the frame, relative to the mesh and its place, a vertex still lies on it
+
+
+@dataclass(frozen=True, eq=False)
+class Sets:
+    """The named parts of a mesh.
+
+    Attributes
+    ----------
+    labels
+        Name of each region -> its label, by ascending label.
+    regions
+        Name of each region -> (k,) int64, its triangles.
+    sides
+        Name of each set of edges -> (k, 2) int64: a triangle, and which of its sides, 0 to 2. An interface is given by the sides of the
+        region that comes first in its name.
+    edges
+        Name of each set of edges -> (k, 2) int64, the vertices at the ends, row for row as in `sides`; directed with that triangle on the
+        left.
+    tags
+        Name of each set of edges -> its number in files.
+    """
+
+    labels: dict[str, int]
+    regions: dict[str, Ints]
+    sides: dict[str, Ints]
+    edges: dict[str, Ints]
+    tags: dict[str, int]
+
+    def __repr__(self) -> str:
+        parts = [("regions", self.regions), ("edges", self.sides)]
+        return "Sets: " + "; ".join(f"{word} " + ", ".join(f"{name} ({len(rows)})" for name, rows in part.items()) for word, part in parts)
+
+
+def named_sets(
+    vertices: Floats,
+    triangles: Ints,
+    regions: Ints,
+    *,
+    bounds: tuple[float, float, float, float] | None = None,
+    names: Mapping[int, str] | None = None,
+) -> Sets:
+    """Name the regions of a mesh, and its edges on the boundary and between regions.
+
+    Parameters
+    ----------
+    vertices, triangles
+        (n, 2) float64, and (m, 3) int64, counter-clockwise. More vertices than the triangles use do no harm.
+    regions
+        (m,) int64.
+    bounds
+        (left, bottom, right, top) of the image, see `img2tri.types.Frame.bounds`. None: there is no frame, and what would lie on it is
+        ``outer``.
+    names
+        Label -> name. Regions without one are called ``region_3``; a name given twice gets the label behind it.
+
+    Returns
+    -------
+    Sets
+        Only what is there: no set is empty.
+
+    Raises
+    ------
+    MeshError
+        If two triangles run along a side in the same direction.
+    ParameterError
+        If a region has the name of a set of edges.
+
+    Examples
+    --------
+    >>> square = np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]]), np.array([[0, 1, 2], [0, 2, 3]])
+    >>> sets = named_sets(*square, np.array([3, 7]), bounds=(0, 0, 1, 2), names={3: "bone"})
+    >>> sets
+    Sets: regions bone (1), region_7 (1); edges left (1), right (1), bottom (1), outer (1), bone__region_7 (1)
+    >>> sets.edges["bone__region_7"].tolist(), sets.tags["bone__region_7"]
+    ([[2, 0]], 6)
+    """
+    called = region_names(regions, names)
+    twins = _twins(triangles, len(vertices))
+    free = np.flatnonzero(twins < 0)
+    start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    inside = np.flatnonzero(twins >= 0)
+    inside = inside[regions[inside // 3] < regions[twins[inside] // 3]]
+
+    found: dict[str, Ints] = {}
+    kind = np.full(len(free), -1)
+    for i, on in enumerate(_on_frame(vertices, start[free], end[free], bounds)):
+        kind[on] = i
+        found[FRAME[i]] = free[kind == i]
+    _, ring, area = rings(vertices, triangles, twins)
+    found[OUTER] = free[(kind < 0) & (area[ring] >= 0)]
+    holes = np.flatnonzero(area < 0)
+    # The area of a hole is negative, so that of the largest one comes first.
+    for i, hole in enumerate(holes[np.argsort(area[holes], kind="stable")].tolist(), 1):
+        found[f"hole_{i}"] = free[(kind < 0) & (ring == hole)]
+    pairs = np.stack([regions[inside // 3], regions[twins[inside] // 3]], axis=1)
+    each, pair = np.unique(pairs, axis=0, return_inverse=True)
+    order = np.argsort(pair.ravel(), kind="stable")
+    for (a, b), sides in zip(each.tolist(), np.split(inside[order], np.cumsum(np.bincount(pair.ravel()))[:-1]), strict=False):
+        name = f"{called[a]}__{called[b]}"
+        found[name if name not in found else f"{name}_{a}_{b}"] = sides
+
+    tags = {name: i for i, name in enumerate((*FRAME, OUTER), 1)}
+    tags |= {name: i for i, name in enumerate((name for name in found if name not in tags), len(tags) + 1)}
+    found = {name: sides for name, sides in found.items() if len(sides)}
+    for label, name in called.items():
+        if name in found:
+            raise ParameterError(f"names: expected names other than those of sets of edges, found {name!r} for region {label}")
+    return Sets(
+        labels={name: label for label, name in called.items()},
+        regions={name: np.flatnonzero(regions == label) for label, name in called.items()},
+        sides={name: np.stack(np.divmod(sides, 3), axis=1) for name, sides in found.items()},
+        edges={name: np.stack([start[sides], end[sides]], axis=1) for name, sides in found.items()},
+        tags={name: tags[name] for name in found},
+    )
+
+
+def region_names(regions: Ints, names: Mapping[int, str] | None = None) -> dict[int, str]:
+    """Return the name of each label that is there, by ascending label.
+
+    Examples
+    --------
+    >>> region_names(np.array([7, 3, 7]), {3: "bone", 5: "marrow"})
+    {3: 'bone', 7: 'region_7'}
+    """
+    return unique_names(np.unique(regions).tolist(), names or {})
+
+
+def rings(vertices: Floats, triangles: Ints, twins: Ints | None = None) -> tuple[Ints, Ints, Floats]:
+    """Follow the boundary of a mesh.
+
+    Returns
+    -------
+    sides
+        (b,) int64, the sides that have no twin, in ascending order: side 3 t + k is side k of triangle t.
+    ring
+        (b,) int64, the ring of each; rings are numbered from 0.
+    area
+        (r,) float64, what each ring encloses: negative for holes, as the mesh is on the left of its sides.
+
+    Examples
+    --------
+    >>> rings(np.array([[0, 0], [2, 0], [0, 2.0]]), np.array([[0, 1, 2]]))
+    (array([0, 1, 2]), array([0, 0, 0]), array([2.]))
+    """
+    twins = _twins(triangles, len(vertices)) if twins is None else twins
+    free = np.flatnonzero(twins < 0)
+    following = _after(free)
+    turning = np.flatnonzero(twins[following] >= 0)
+    while len(turning):
+        following[turning] = _after(twins[following[turning]])
+        turning = turning[twins[following[turning]] >= 0]
+    # Each side looks one, two, four... sides ahead for the lowest number, until it has seen the whole ring.
+    step, lowest = np.searchsorted(free, following), np.arange(len(free))
+    for _ in range(len(free).bit_length()):
+        lowest = np.minimum(lowest, lowest[step])
+        step = step[step]
+    ring = np.unique(lowest, return_inverse=True)[1]
+    a, b = (vertices[:, :2] - vertices[0, :2])[np.stack([triangles.ravel()[free], triangles.ravel()[_after(free)]])]
+    area = np.bincount(ring, (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2).astype(np.float64)
+    return free.astype(np.int64), ring.astype(np.int64), area
+
+
+def _after(sides: Ints) -> Ints:
+    """Return the next side of the same triangle: it begins where `sides` end."""
+    return sides - sides % 3 + (sides + 1) % 3
+
+
+def _twins(triangles: Ints, n: int) -> Ints:
+    """Return for each side the one that runs the other way, or -1; refuse a side that is there twice."""
+    start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    key = start * n + end
+    order = np.argsort(key, kind="stable")
+    ordered = key[order]
+    twice = np.count_nonzero(ordered[1:] == ordered[:-1])
+    if twice:
+        raise MeshError(
+            "triangles: expected each side in at most two triangles, wound alike; "
+            f"found {twice} that run along a side in the same direction as another"
+        )
+    opposite = end * n + start
+    place = np.searchsorted(ordered, opposite).clip(max=len(key) - 1)
+    return np.where(ordered[place] == opposite, order[place], -1)
+
+
+def _on_frame(vertices: Floats, start: Ints, end: Ints, bounds: tuple[float, float, float, float] | None) -> list[Bools]:
+    """Return for each side of the frame which of the edges lie on it."""
+    if bounds is None:
+        return []
+    left, bottom, right, top = bounds
+    within = _FLAT * max(np.abs(bounds).max(), right - left, top - bottom)
+    places = ((0, left), (0, right), (1, bottom), (1, top))
+    return [np.all(np.abs(vertices[:, axis][np.stack([start, end])] - value) <= within, axis=0) for axis, value in places]

@@ -1,0 +1,72 @@
+"""The conforming recipe on tiny difficult label maps: all promises, under rotation and mirroring."""
+
+from __future__ import annotations
+
+import numpy as np
+import oracles
+import pytest
+import specimens
+
+from img2tri import mesh_image
+from img2tri.raster.labels.segmentation import Zones
+from img2tri.recipes import conforming
+from img2tri.recipes.conforming import Sizes, conform, trace_outlines
+from img2tri.types import Frame
+
+
+def check(labels, *, background=0, edge_length=8.0):
+    outlines, links = trace_outlines(Zones(labels, background), Frame(labels.shape))
+    made = conform(outlines, links, Sizes(edge_length))
+    regions = outlines.labels[made.regions]
+    oracles.check_valid(made.vertices, made.triangles)
+    assert oracles.angles(made.vertices, made.triangles).min() >= 30 - 1e-6
+    oracles.check_faithful(made.vertices, made.triangles, regions, labels, background=background)
+    return made
+
+
+@pytest.mark.parametrize("name", specimens.ALL)
+def test_specimens_keep_all_promises(name):
+    for labels in specimens.turned(specimens.ALL[name]):
+        check(labels)
+
+
+@pytest.mark.parametrize("name", specimens.ALL)
+def test_specimens_without_background(name):
+    check(specimens.ALL[name], background=None)
+
+
+@pytest.mark.parametrize("density", [0.1, 0.3, 0.5, 0.7, 0.9])
+def test_noise(density):
+    labels = (np.random.default_rng(7).random((32, 32)) < density).astype(int)
+    check(labels)
+
+
+@pytest.mark.parametrize("count", [2, 3, 5, 8])
+def test_random_labels(count):
+    labels = np.random.default_rng(count).integers(0, count, (20, 20))
+    check(labels)
+    check(labels, background=None)
+
+
+@pytest.mark.parametrize("edge_length", [1.0, 2.5, 16.0, 100.0])
+def test_any_edge_length(edge_length):
+    check(specimens.disc(30, 12), edge_length=edge_length)
+    check(specimens.polycrystal(), edge_length=edge_length)
+
+
+def test_where_no_network_can_be_filled_its_error_is_what_one_gets(monkeypatch):
+    """Also where refining the outlines changes nothing any more, before all attempts are used up."""
+    from img2tri.errors import MeshError
+    from img2tri.triangles.generate import filling
+    from img2tri.triangles.generate.constrained_delaunay import NetworkError
+
+    tried = []
+
+    def never(*_, **__):
+        tried.append(1)
+        raise NetworkError("network: expected another one")
+
+    monkeypatch.setattr(filling, "fill", never)
+    with pytest.raises(MeshError, match="expected another one"):
+        mesh_image(np.ones((1, 1), bool), edge_length=8)
+    assert 1 < len(tried) <= conforming.ATTEMPTS

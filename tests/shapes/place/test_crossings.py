@@ -1,0 +1,45 @@
+"""Found by what lies beside them, edges do not depend on the brightness and contrast of an image, nor on which side is the bright one."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from img2tri.shapes.place.iso_crossings import crossings_by_level
+from img2tri.shapes.trace.crack_edges import find_cracks
+from img2tri.shapes.trace.dual_edges import lay_out
+from img2tri.types import Frame
+
+Y, X = (np.mgrid[:320, :320] + 0.5) / 8
+FINE = (np.hypot(X - 20.3, Y - 19.6) < 14.2) & ~((abs(X - 22) < 5) & (abs(Y - 18) < 4))  # a disc, and a hole along the sides of pixels
+SOFT = FINE.reshape(40, 8, 40, 8).mean(axis=(1, 3))
+MASK = (SOFT > 0.5).astype(int)
+
+
+def crossings(gray):
+    frame = Frame(gray.shape)
+    links = lay_out(find_cracks(MASK, upward=True), frame)
+    return crossings_by_level(gray, None, links.middle, links.axis, frame)
+
+
+@pytest.mark.parametrize(("contrast", "brightness"), [(1, 10), (100, 37), (3, -1000), (-1, 0), (-50, 255), (-2, -7)])
+def test_crossings_do_not_depend_on_brightness_and_contrast(contrast, brightness):
+    shift, slack = crossings(SOFT)
+    assert np.ptp(shift) > 0.3
+    assert len(set(slack.tolist())) > 1
+    other_shift, other_slack = crossings(contrast * SOFT + brightness)
+    np.testing.assert_allclose(other_shift, shift, atol=1e-9)
+    assert np.array_equal(other_slack, slack)
+
+
+@pytest.mark.parametrize("share", [0.1, 0.25, 0.5, 0.75, 0.9])
+def test_an_edge_between_two_grays_is_where_their_mean_is(share):
+    gray = np.full((7, 40), 80.0)
+    gray[:, :19], gray[:, 19] = 200.0, 80 + 120 * share
+    frame = Frame(gray.shape)
+    links = lay_out(find_cracks(np.where(gray > 140, 1, 0), background=None, upward=True), frame)
+    shift, _ = crossings_by_level(gray, None, links.middle, links.axis, frame)
+    found = (links.middle + shift * links.axis)[links.axis != 0].real
+    assert len(found) == 7
+    # Between the centres of pixels the gray value changes evenly.
+    assert found == pytest.approx(np.interp(-140, -gray[3, 17:22], np.arange(17, 22) + 0.5), abs=0.011)

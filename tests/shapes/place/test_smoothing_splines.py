@@ -1,0 +1,155 @@
+"""Smoothing splines along chains: against a dense solution of the same problem, and what they must leave alone."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from img2tri.shapes.place.padded_chains import Unrolled
+from img2tri.shapes.place.smoothing_splines import CONTINUED, WIDTH, Elastic, beyond, faded
+
+
+def laid(z, *, ring, reach=CONTINUED):
+    """One chain on a line: a ring ends with its first point."""
+    indices = np.append(np.arange(len(z)), 0) if ring else np.arange(len(z))
+    line = Unrolled(indices, np.array([0, len(indices)]), np.array([ring]), np.array([True]), reach)
+    return line, line.points(z)
+
+
+def smoothed(line, points, scale, free=()):
+    curves = Elastic(line, points, np.isin(np.arange(line.source.max() + 1), free))
+    return *curves.smoothed(scale), curves.steps
+
+
+def circle(radius, count, seed=0):
+    """Points spread unevenly on a circle."""
+    angle = np.cumsum(np.random.default_rng(seed).uniform(0.7, 1.3, count))
+    return radius * np.exp(2j * np.pi * angle / angle[-1])
+
+
+def by_hand(x, z, weight, stiffness, *, ring, period=0.0):
+    """The same curve by a dense matrix with one row for each third derivative; open chains three times as long, turned about their ends."""
+    n = len(z)
+    rows, near = [], n if ring else n - 3
+    for k in range(near):
+        at = np.arange(k, k + 4)
+        places = x[at % n] + period * (at // n)
+        rows.append(np.zeros(n))
+        for j in range(4):
+            others = np.delete(places, j)
+            rows[-1][at[j] % n] += 6 / np.prod(places[j] - others) * np.sqrt((places[3] - places[0]) / 3)
+    D = np.array(rows)
+    return np.linalg.solve(np.diag(weight) + stiffness * D.T @ D, weight * z)
+
+
+@pytest.mark.parametrize("scale", [1.5, 5.0])
+@pytest.mark.parametrize("count", [40, 41])
+def test_rings_are_those_of_a_dense_matrix(scale, count):
+    rng = np.random.default_rng(count)
+    z = circle(count / 6.3, count) + rng.normal(0, 0.2, count) + 1j * rng.normal(0, 0.2, count)
+    line, points = laid(z, ring=True)
+    off, _, steps = smoothed(line, points, scale)
+    own = np.flatnonzero(line.own)
+    ahead, behind = steps[own], steps[own - 1]
+    expected = by_hand(np.cumsum(ahead) - ahead, z, (ahead + behind) / 2, (WIDTH * scale) ** 6, ring=True, period=ahead.sum())
+    np.testing.assert_allclose((points + off)[own], expected, atol=1e-8)
+
+
+@pytest.mark.parametrize("scale", [1.5, 4.0])
+def test_open_chains_are_those_of_a_dense_matrix(scale):
+    rng = np.random.default_rng(0)
+    z = np.arange(50) * (0.8 + 0.3j) + rng.normal(0, 0.2, 50) + 1j * rng.normal(0, 0.2, 50)
+    line, points = laid(z, ring=False, reach=60)
+    off, _, steps = smoothed(line, points, scale)
+    # Turned about its ends twice, the middle of the long chain knows nothing of where that ends.
+    inner = slice(8, -8)
+    x = np.concatenate([[0], np.cumsum(steps)])[inner]
+    weight = np.convolve(np.diff(x, prepend=x[0], append=x[-1]), [0.5, 0.5], "valid")
+    expected = by_hand(x, points[inner], weight, (WIDTH * scale) ** 6, ring=False)
+    np.testing.assert_allclose((points + off)[line.own], expected[line.own[inner]], atol=1e-6)
+
+
+@pytest.mark.parametrize("scale", [1.0, 4.0, 16.0])
+def test_circles_stay_whose_points_lie_unevenly(scale):
+    z = circle(60.0, 377)
+    line, points = laid(z, ring=True)
+    off, direction, steps = smoothed(line, points, scale)
+    curve = (points + off)[line.own]
+    assert np.abs(np.abs(curve) - 60).max() < 0.02
+    assert np.abs((direction[line.own] * curve.conj()).real / 60).max() < 0.02
+    assert steps[np.flatnonzero(line.own)].sum() == pytest.approx(2 * np.pi * 60, rel=0.01)
+
+
+@pytest.mark.parametrize("scale", [1.0, 5.0, 16.0])
+def test_straight_lines_and_nodes_stay(scale):
+    line, points = laid((2 - 1j) * np.arange(40), ring=False)
+    assert np.abs(smoothed(line, points, scale)[0]).max() < 1e-9
+    rng = np.random.default_rng(1)
+    line, points = laid(np.arange(40) + rng.normal(0, 0.3, 40) * 1j, ring=False)
+    off = smoothed(line, points, scale)[0]
+    assert np.abs(off[line.node]).max() < 1e-9
+    assert np.abs(off[line.own]).max() > 0.1
+
+
+def test_free_nodes_follow_the_rest_of_their_chain():
+    z = (2 - 1j) * np.arange(40) + 3
+    moved = z.copy()
+    moved[[0, -1]] += 0.4j, -0.3j
+    line, points = laid(moved, ring=False)
+    for free, stays in (([], [0, -1]), ([0], [-1]), ([0, 39], [])):
+        off, direction, _ = smoothed(line, points, 4.0, free)
+        curve = (points + off)[line.own]
+        assert curve[stays] == pytest.approx(moved[stays], abs=1e-9)
+        if len(free) == 2:
+            # On the line again, though not evenly along it.
+            np.testing.assert_allclose(((curve - 3) / (2 - 1j)).imag, 0, atol=1e-6)
+            np.testing.assert_allclose(direction[line.own] * abs(2 - 1j) / (2 - 1j), 1, atol=1e-6)
+
+
+def test_waves_are_taken_away_by_their_length():
+    scale, x = 4.0, np.arange(600)
+    for waves, least, most in ((0.5, 0, 0.01), (3, 0.45, 0.55), (6, 0.97, 1.0)):
+        z = x + 0.05j * np.sin(2 * np.pi * x / (waves * scale))
+        line, points = laid(z, ring=False)
+        left = np.abs((points + smoothed(line, points, scale)[0])[line.own].imag[100:-100]).max()
+        assert least <= left / 0.05 <= most, waves
+
+
+@pytest.mark.parametrize("ring", [True, False])
+def test_distances_of_marks_are_those_along_the_chain(ring):
+    rng = np.random.default_rng(2)
+    line, points = laid(circle(8.0, 50, seed=3) if ring else np.cumsum(rng.uniform(0.7, 1.3, 50)), ring=ring)
+    _, _, steps = smoothed(line, points, 2.0)
+    own = np.flatnonzero(line.own)
+    x, length = np.cumsum(steps[own]) - steps[own], steps[own].sum()
+    for chosen in ([], [0], [49], [3, 20], [25]):
+        marks = np.zeros(len(points), bool)
+        marks[own[chosen]] = True
+        away = np.abs(x[:, None] - x[chosen])
+        if ring:
+            away = np.minimum(away, length - away)
+        for distance in (0.5, 6.0):
+            expected = away.min(axis=1, initial=np.inf) > distance
+            assert np.array_equal(beyond(line, steps, marks, distance)[own], expected)
+
+
+def test_marks_say_nothing_of_other_chains():
+    z = np.concatenate([circle(6.0, 40), circle(9.0, 60) + 100, np.arange(30.0) + 50j])
+    indices = np.concatenate([np.arange(40), [0], np.arange(40, 100), [40], np.arange(100, 130)])
+    line = Unrolled(indices, np.array([0, 41, 102, 132]), np.array([True, True, False]), np.ones(3, bool), CONTINUED)
+    _, _, steps = smoothed(line, line.points(z), 2.0)
+    for chain in range(3):
+        far = beyond(line, steps, line.chain == chain, 1000.0)
+        assert np.array_equal(far, line.chain != chain)
+
+
+def test_values_fade_and_do_not_add_up():
+    line, _ = laid(np.arange(60.0), ring=False)
+    values = np.zeros(len(line.own))
+    own = np.flatnonzero(line.own)
+    values[own[[10, 40, 41]]] = 1, -2, -2
+    fading = faded(line, values, 3.0)[own]
+    assert fading[[10, 40, 41]] == pytest.approx([1, -2, -2], abs=0.05)
+    assert fading[13] == pytest.approx(np.exp(-0.5), abs=0.01)
+    assert np.abs(fading[[0, 25, 59]]).max() < 0.02
+    assert not faded(line, np.zeros(len(values)), 3.0).any()

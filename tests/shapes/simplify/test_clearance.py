@@ -1,0 +1,143 @@
+"""Crowded and sharp pieces against looking at every pair."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+import pytest
+import shapely
+import specimens
+
+from img2tri.shapes.place.placement import place
+from img2tri.shapes.simplify import clearance
+from img2tri.shapes.simplify.clearance import GAP, _around, crowded_pieces, sharp_pieces, to_segment
+from img2tri.shapes.simplify.simplification import draft
+from img2tri.shapes.trace.crack_edges import find_cracks
+from img2tri.types import Frame
+
+LEAST_ANGLE = 50
+SHAPES = {
+    "dent with an island": specimens.MASKS["dent with an island"],
+    "comb": specimens.MASKS["comb"],
+    "polycrystal": specimens.polycrystal(24, 6),
+    "thin cross": specimens.MASKS["thin cross"],
+    "spiral": specimens.spiral(2),
+    "noise": np.random.default_rng(5).integers(0, 2, (8, 9)),
+    "labels": np.random.default_rng(6).integers(0, 4, (6, 7)),
+}
+
+
+def drafted(name, spacing, seed=0):
+    """A draft as it is before anything is split, its bulges made up."""
+    labels = SHAPES[name]
+    d = draft(*place(find_cracks(labels), Frame(labels.shape)), spacing=spacing)
+    bulge = np.random.default_rng(seed).uniform(0, 0.6, len(d.bulge))
+    return replace(d, bulge=bulge)
+
+
+def pairs_by_hand(d):
+    """Pairs of pieces that are crowded, and that are sharp."""
+    first, last = d.pieces
+    at, z, chain = d.outlines.indices, d.dense[d.outlines.indices], d.links.chain
+    place = d.places
+    lines = shapely.linestrings([[(p.real, p.imag) for p in place[[a, b]]] for a, b in zip(first, last, strict=True)])
+    step = np.abs(np.diff(z))
+    crowded, sharp = [], []
+    for i, j in combinations(range(len(first)), 2):
+        ends = [{at[first[k]], at[last[k]]} for k in (i, j)]
+        shared = ends[0] & ends[1]
+        if not shared:
+            distance = lines[i].distance(lines[j])
+            way = np.inf
+            if chain[first[i]] == chain[first[j]]:
+                way = step[last[i] : first[j]].sum()
+                if d.links.rings[chain[first[i]]]:
+                    begin, end = d.outlines.starts[chain[first[i]]], d.outlines.starts[chain[first[i]] + 1] - 1
+                    way = min(way, step[begin : first[i]].sum() + step[last[j] : end].sum())
+            if distance < GAP + d.bulge[first[i]] + d.bulge[first[j]] and way > max(4 * distance, 1):
+                crowded.append((i, j))
+        for point in shared:
+            headings = []
+            for k in (i, j):
+                a, b = (first[k], last[k]) if at[first[k]] == point else (last[k], first[k])
+                headings.append(place[b] - place[a])
+            if abs(np.degrees(np.angle(headings[0] / headings[1]))) < LEAST_ANGLE:
+                sharp.append((i, j))
+    return crowded, sharp
+
+
+def marked(pairs, fresh):
+    found = np.zeros(len(fresh), bool)
+    for i, j in pairs:
+        if fresh[i] or fresh[j]:
+            found[[i, j]] = True
+    return found
+
+
+@pytest.mark.parametrize("spacing", [1.5, 4.0, 9.0])
+@pytest.mark.parametrize("name", SHAPES)
+def test_pieces_are_those_found_by_looking_at_every_pair(name, spacing):
+    d = drafted(name, spacing)
+    first, last = d.pieces
+    crowded, sharp = pairs_by_hand(d)
+    rng = np.random.default_rng(1)
+    for share in (1.0, 0.5, 0.1, 0.02):
+        fresh = rng.random(len(first)) < share
+        fresh[rng.integers(len(first))] = True
+        assert np.array_equal(crowded_pieces(d, first, last, fresh), marked(crowded, fresh))
+        # Others that meet in the same point as a fresh piece may be told as well.
+        found = sharp_pieces(d, first, last, fresh)
+        assert (found >= marked(sharp, fresh)).all()
+        assert (found <= marked(sharp, np.ones(len(first), bool))).all()
+
+
+def test_there_is_something_to_find():
+    found = [pairs_by_hand(drafted(name, 4.0)) for name in SHAPES]
+    assert sum(bool(crowded) for crowded, _ in found) >= 4
+    assert sum(bool(sharp) for _, sharp in found) >= 3
+
+
+def test_distance_to_segments():
+    rng = np.random.default_rng(0)
+    p, a, b = (rng.uniform(-5, 5, 200) + 1j * rng.uniform(-5, 5, 200) for _ in range(3))
+    b[:10] = a[:10]  # segments that are a point
+    lines = shapely.linestrings(np.stack([np.stack([q.real, q.imag], axis=1) for q in (a, b)], axis=1))
+    np.testing.assert_allclose(to_segment(p, a, b), shapely.distance(lines, shapely.points(p.real, p.imag)), atol=1e-12)
+
+
+def test_where_nothing_is_fresh_nothing_is_sharp():
+    d = drafted("noise", 4.0)
+    first, last = d.pieces
+    assert sharp_pieces(d, first, last, np.ones(len(first), bool)).any()
+    assert not sharp_pieces(d, first, last, np.zeros(len(first), bool)).any()
+
+
+@pytest.mark.parametrize("reach", [0.3, 1.0, 4.0, 30.0])
+def test_no_place_within_reach_is_left_out_and_none_far_away_is_looked_at(reach):
+    rng = np.random.default_rng(0)
+    places = rng.uniform(-10, 10, 2000) + 1j * rng.uniform(-5, 15, 2000)
+    for count in (1, 20):
+        chosen = np.isin(np.arange(2000), rng.choice(2000, count, replace=False))
+        away = np.abs(places[:, None] - places[chosen]).min(axis=1)
+        found = _around(places, reach, chosen)
+        assert found[away <= reach].all()
+        assert not found[away > 2 * np.sqrt(2) * reach].any()
+
+
+@pytest.mark.parametrize("count", [0, 1, 7, 300])
+def test_few_pairs_are_found_as_many_are(monkeypatch, count):
+    rng = np.random.default_rng(count)
+    a = rng.uniform(0, 60, 300) + 1j * rng.uniform(0, 60, 300)
+    b = a + rng.exponential(3, 300) * np.exp(2j * np.pi * rng.uniform(size=300))
+    reach, fresh = rng.uniform(0, 1, 300), np.arange(300) < count
+    found = []
+    for few in (0, 10**9):
+        monkeypatch.setattr(clearance, "FEW", few)
+        pairs = [tuple(sorted(pair)) for pair in np.transpose(clearance._within(a, b, reach, fresh)).tolist()]
+        assert len(set(pairs)) == len(pairs)
+        found.append(set(pairs))
+    assert found[0] == found[1]
+    assert bool(found[0]) == (count > 0)
+    assert all(fresh[i] or fresh[j] for i, j in found[0])

@@ -1,0 +1,92 @@
+"""Vertices of 4 triangles go, those of 8 are split in two, where it costs least; looked at one by one."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from img2tri.triangles.generate.valence_repair import repaired, surplus
+
+CENTRE = 30 - 20j
+
+
+def wheel(count, radius=1.0):
+    """A vertex with `count` triangles around it, 0, and its neighbours counter-clockwise; shuffled, so that no order is relied upon."""
+    rim = CENTRE + radius * np.exp(2j * np.pi * np.arange(count) / count)
+    triangles = np.stack([np.zeros(count, int), 1 + np.arange(count), 1 + (1 + np.arange(count)) % count], axis=1)
+    triangles = np.array([np.roll(t, k % 3) for k, t in enumerate(triangles)])
+    return np.concatenate([[CENTRE], rim]), np.random.default_rng(count).permutation(triangles)
+
+
+def free_hub(vertices):
+    return np.arange(len(vertices)) == 0
+
+
+@pytest.mark.parametrize("count", range(3, 10))
+def test_the_surplus_is_counted_against_the_angle(count):
+    vertices, triangles = wheel(count)
+    extra = surplus(vertices, triangles)
+    assert extra[0] == pytest.approx(count - 6)
+    # Two triangles for an angle of 180 - 360 / count degrees.
+    assert extra[1:] == pytest.approx(2 - (180 - 360 / count) / 60)
+
+
+@pytest.mark.parametrize(
+    ("count", "added", "stays"),
+    [(3, 0, False), (4, 0, False), (5, 0, True), (6, 0, True), (7, 0, True), (8, 2, False)],
+)
+def test_too_few_go_too_many_are_split(count, added, stays):
+    vertices, triangles = wheel(count)
+    points, kept = repaired(vertices, triangles, free_hub(vertices))
+    assert len(points) == added
+    assert kept.tolist() == [stays] + count * [True]
+    nothing, all_kept = repaired(vertices, triangles, np.zeros(len(vertices), bool))
+    assert len(nothing) == 0
+    assert all_kept.all()
+
+
+@pytest.mark.parametrize("cheapest", range(4))
+@pytest.mark.parametrize("count", [8, 9, 10])
+def test_the_split_is_across_the_pair_that_bears_it_best(count, cheapest):
+    vertices, triangles = wheel(count)
+    half = count // 2
+    # More triangles outside at all neighbours but one pair: a fan around each that fills the outside.
+    pair = {1 + cheapest, 1 + (cheapest + half) % count}
+    outside, new = [], [vertices]
+    for k in range(1, count + 1):
+        if k in pair:
+            continue
+        first = len(np.concatenate(new))
+        around = vertices[k] + 0.3 * (vertices[k] - CENTRE) * np.exp(1j * np.linspace(-0.9, 0.9, 6))
+        new.append(around)
+        outside += [[k, first + i, first + i + 1] for i in range(5)]
+    all_vertices, all_triangles = np.concatenate(new), np.concatenate([triangles, outside])
+    assert {1 + int(i) for i in np.argsort(surplus(all_vertices, all_triangles)[1 : count + 1])[:2]} == pair
+    points, _ = repaired(all_vertices, all_triangles, free_hub(all_vertices))
+    # Halves of the ring, both with the two of the pair.
+    places = [(cheapest + np.arange(half + 1)) % count, (cheapest + half + np.arange(count - half + 1)) % count]
+    expected = [(vertices[1 + at].mean() + CENTRE) / 2 for at in places]
+    found = sorted(points, key=lambda z: abs(z - expected[0]))
+    assert found == pytest.approx(expected)
+
+
+def test_of_rings_that_share_a_vertex_only_the_first_is_changed():
+    vertices, triangles = wheel(8)
+    shifted = np.where(triangles == 1, 1, np.where(triangles == 0, 9, triangles + 8))
+    # A second wheel, mirrored about the first neighbour of the first.
+    second = 2 * vertices[1] - vertices
+    both = np.concatenate([vertices, [second[0]], second[2:]])
+    hubs = np.isin(np.arange(len(both)), (0, 9))
+    points, stays = repaired(both, np.concatenate([triangles, shifted]), hubs)
+    assert not stays[0]
+    assert stays[9]
+    assert len(points) == 2
+    assert abs(points - CENTRE).max() < 0.5
+
+
+def test_free_vertices_without_triangles_go():
+    vertices, triangles = wheel(6)
+    lonely = np.concatenate([vertices, [CENTRE + 5, CENTRE - 5]])
+    free = np.isin(np.arange(len(lonely)), (0, 7))
+    _, stays = repaired(lonely, triangles, free)
+    assert stays.tolist() == 7 * [True] + [False, True]
