@@ -1,0 +1,135 @@
+"""What all stages share about arrays: their types, the plane as complex numbers, numbers within runs, chains.
+
+Places and vectors of the plane are complex numbers x + iy wherever there is much to compute with them: turning, scaling and shifting
+are one operation each. Where they are handed on to users they are rows (n, 2).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+Points = NDArray[np.complex128]  # places or vectors of the plane
+
+
+def as_complex(rows: Floats) -> Points:
+    """Turn rows (n, 2) of x and y into complex numbers (n,) x + iy, without a copy where the rows lie side by side.
+
+    Examples
+    --------
+    >>> as_complex(np.array([[1.0, 2.0], [3.0, 0.0]]))
+    array([1.+2.j, 3.+0.j])
+    """
+    result: Points = np.ascontiguousarray(rows, np.float64).reshape(-1).view(np.complex128)
+    return result
+
+
+def as_rows(z: Points) -> Floats:
+    """Turn complex numbers (n,) into rows (n, 2) of x and y, the inverse of `as_complex`.
+
+    Examples
+    --------
+    >>> as_rows(np.array([1 + 2j, 3]))
+    array([[1., 2.],
+           [3., 0.]])
+    """
+    result: Floats = np.ascontiguousarray(z, np.complex128).view(np.float64).reshape(-1, 2)
+    return result
+
+
+def cross(a: Points, b: Points) -> Floats:
+    """Cross product of plane vectors written as complex numbers: positive where b points to the left of a.
+
+    Examples
+    --------
+    >>> cross(np.array([1 + 0j]), np.array([3 + 2j]))
+    array([2.])
+    """
+    result: Floats = a.real * b.imag - a.imag * b.real
+    return result
+
+
+def runs(counts: Ints) -> tuple[Ints, Ints]:
+    """Lay out runs of so many items one after the other.
+
+    Parameters
+    ----------
+    counts
+        (r,) integer, the number of items of each run, 0 or more.
+
+    Returns
+    -------
+    run : (n,) int64
+        The run each item belongs to.
+    place : (n,) int64
+        The number of each item within its run.
+
+    Examples
+    --------
+    >>> runs(np.array([2, 0, 3]))
+    (array([0, 0, 2, 2, 2]), array([0, 1, 0, 1, 2]))
+    """
+    run = np.repeat(np.arange(len(counts)), counts)
+    return run, np.arange(len(run)) - np.repeat(np.cumsum(counts) - counts, counts)
+
+
+@dataclass(frozen=True, eq=False)
+class ChainIndex:
+    """Points joined to chains: open ones between two nodes, and rings.
+
+    ::
+
+        open  N a b c M         ring  a b c d a        one after the other in `indices`, each from `starts[i]` on
+
+    Attributes
+    ----------
+    indices
+        (k,) int64, the points of all chains one after the other, ends included. A ring repeats its first point. A place in
+        this array is an *entry*: a node has one in each chain that ends there, a ring's first point two.
+    starts
+        (c + 1,) int64: chain i is ``indices[starts[i]:starts[i + 1]]``.
+    rings
+        (c,) bool, the chains that are rings. An open chain may begin and end at one node.
+    """
+
+    indices: Ints
+    starts: Ints
+    rings: Bools
+
+    @cached_property
+    def chain(self) -> Ints:
+        """(k,) the chain of each entry."""
+        return np.repeat(np.arange(len(self.rings)), np.diff(self.starts))
+
+    @property
+    def first(self) -> Ints:
+        """(c,) the first entry of each chain."""
+        return self.starts[:-1]
+
+    @property
+    def last(self) -> Ints:
+        """(c,) the last entry of each chain."""
+        return self.starts[1:] - 1
+
+    @property
+    def ends(self) -> tuple[Ints, Ints]:
+        """First and last point of each chain; the same for a ring."""
+        return self.indices[self.first], self.indices[self.last]
+
+    @property
+    def ring_ends(self) -> tuple[Ints, Ints]:
+        """First and last entry of each ring: two entries of one point."""
+        return self.first[self.rings], self.last[self.rings]
+
+    @property
+    def heads(self) -> Ints:
+        """(s,) the entries that another one follows in their chain: the first entry of each segment."""
+        followed = np.ones(len(self.indices), bool)
+        followed[self.last] = False
+        return np.flatnonzero(followed)
