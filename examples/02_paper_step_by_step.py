@@ -22,8 +22,8 @@ from img2tri.paper.recipes import CLOSENESS, structured_mesh, unstructured_mesh
 from img2tri.raster.io.reading import read
 from img2tri.raster.labels.gray import to_gray
 from img2tri.raster.labels.thresholds import binarize
-from img2tri.triangles.tools.quality import assess
-from img2tri.triangles.tools.smoothing import uniform
+from img2tri.triangles.tools.laplacian_smoothing import uniform
+from img2tri.triangles.tools.quality_summary import assess
 from img2tri.triangles.tools.topology import adjacency
 from img2tri.types import Frame
 from img2tri.views.figures.plot import draw

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import SupportsFloat, SupportsIndex, TypeVar
 
 T = TypeVar("T", bound=str)
@@ -138,3 +138,25 @@ def shown(value: object) -> str:
 def _is_bool(value: object) -> bool:
     # numpy's own, without the need to load numpy here.
     return isinstance(value, bool) or type(value).__name__ in ("bool_", "bool")
+
+
+def bounded(what: str, rounds: int) -> Iterator[int]:
+    """Count the rounds of a loop that is known to end, and end it with an error where it does not: a loop never runs for ever.
+
+    Parameters
+    ----------
+    what
+        Which loop, for the message.
+    rounds
+        More than it can take.
+
+    Examples
+    --------
+    >>> for _ in bounded("halving", 3):
+    ...     pass
+    Traceback (most recent call last):
+    ...
+    img2tri.errors.Img2triError: halving: expected to be done within 3 rounds, found no end; this is a fault of img2tri, please report it
+    """
+    yield from range(rounds)
+    raise Img2triError(f"{what}: expected to be done within {rounds} rounds, found no end; this is a fault of img2tri, please report it")

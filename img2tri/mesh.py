@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from img2tri.certificate.report import Report
     from img2tri.recipes.second_order import SecondOrder
-    from img2tri.triangles.tools.quality import Quality
+    from img2tri.triangles.tools.quality_summary import Quality
     from img2tri.views.objects.cells import Cells
     from img2tri.views.objects.named_sets import Sets
 
@@ -90,7 +90,7 @@ class TriangleMesh:
 
     def quality(self) -> Quality:
         """Measure the triangles: angles, areas, edge lengths, ratios, by their Verdict names, and q = 2 r / R."""
-        from img2tri.triangles.tools.quality import assess
+        from img2tri.triangles.tools.quality_summary import assess
 
         return assess(self.vertices, self.triangles)
 
@@ -139,7 +139,7 @@ class TriangleMesh:
         tolerance, guard
             How far a vertex of the boundary may move, as a length. Whether no triangle may be turned over, nor the worst angle fall.
         """
-        from img2tri.triangles.tools.smoothing import cotangent, uniform
+        from img2tri.triangles.tools.laplacian_smoothing import cotangent, uniform
 
         choice("method", method, ("uniform", "cotangent"))
         within = self.frame.length("tolerance", tolerance)
@@ -289,7 +289,7 @@ class TriangleMesh:
 
     def _data(self) -> dict[str, Any]:
         """Collect what objects and files carry along: the height of the plane, q of each triangle, how the mesh was made."""
-        from img2tri.triangles.tools.quality import measure
+        from img2tri.triangles.tools.quality_summary import measure
 
         about: dict[str, Any] = {"version": __version__, "names": {str(label): name for label, name in self.names.items()}}
         if self.origin is not None:

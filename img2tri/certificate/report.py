@@ -17,7 +17,7 @@ import numpy as np
 
 from img2tri.certificate import measures as judging
 from img2tri.certificate.measures import Curves
-from img2tri.triangles.tools.quality import measure
+from img2tri.triangles.tools.quality_summary import measure
 from img2tri.triangles.tools.topology import curve_edges
 from img2tri.types import Floats, Frame, Ints, Origin
 

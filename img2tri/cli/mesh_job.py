@@ -93,7 +93,7 @@ def _made(job: Job, progress: Progress) -> Outcome:
 def view(job: Job, command: str, progress: Progress) -> tuple[list[str], str]:
     """Mesh an image; return what there is to say about the mesh, and a page about it."""
     from img2tri.pipeline import mesh_image
-    from img2tri.triangles.tools.quality import measure
+    from img2tri.triangles.tools.quality_summary import measure
     from img2tri.views.figures.html_page import page
 
     image = opened(job.image, job.options)

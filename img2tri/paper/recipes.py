@@ -3,7 +3,7 @@
 - `structured_mesh` (II-B, III-B, III-D): square grid -> points on white pixels -> Delaunay -> centroid filter.
 - `unstructured_mesh` (II-C to II-E, III-C to III-E, `put_together` in the listing), contour by contour: points spread evenly along the
   contour -> Poisson-disk points inside -> Delaunay -> centroid filter. The ten passes of smoothing that follow are
-  `img2tri.triangles.tools.smoothing.uniform`, with the points of the contour `fixed`.
+  `img2tri.triangles.tools.laplacian_smoothing.uniform`, with the points of the contour `fixed`.
 
 They do what the paper does, and are mended only where its listing cannot end, repeats a point, or is slow. So holes are filled, half a
 pixel is lost all around, corners are cut, and a triangle may stick out of the shape. Both work in image coordinates,
@@ -26,7 +26,7 @@ from img2tri.paper.contours import contour_polygon, external_contours
 from img2tri.paper.delaunay import centroid_filter, delaunay, without_unused
 from img2tri.paper.grid import MOST_POINTS, mask_filter, structured_grid
 from img2tri.paper.poisson_disk import poisson_disk
-from img2tri.triangles.tools.smoothing import uniform
+from img2tri.triangles.tools.laplacian_smoothing import uniform
 from img2tri.triangles.tools.topology import curve_vertices
 from img2tri.types import Bools, Floats, Frame, Ints, Made
 

@@ -1,1 +1,5 @@
-"""TRIANGLES: points and segments -> triangles; smoothing; quality."""
+"""TRIANGLES: points and segments -> triangles; and work on triangles.
+
+generate   Outlines -> triangles: the mesh is made here.
+tools      Any mesh: topology, quality, smoothing. Neither folder imports the other.
+"""

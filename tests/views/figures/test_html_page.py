@@ -17,7 +17,7 @@ from views.plates import ring, strip
 
 import img2tri
 from img2tri.errors import MeshError, ParameterError
-from img2tri.triangles.tools.quality import measure
+from img2tri.triangles.tools.quality_summary import measure
 from img2tri.types import Frame
 from img2tri.views.figures import html_tables as tables
 from img2tri.views.figures.colours import palette

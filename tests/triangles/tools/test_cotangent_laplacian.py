@@ -11,7 +11,7 @@ from oracles import angles, areas
 from scipy.spatial import Delaunay
 
 from img2tri.errors import MeshError, ParameterError
-from img2tri.triangles.tools.harmonic import carry, laplacian, smooth_field
+from img2tri.triangles.tools.cotangent_laplacian import carry, laplacian, smooth_field
 from img2tri.triangles.tools.topology import curve_vertices
 
 

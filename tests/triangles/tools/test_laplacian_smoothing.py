@@ -11,8 +11,8 @@ from scipy.linalg import eigh
 from scipy.spatial import Delaunay
 
 from img2tri.errors import MeshError, ParameterError
-from img2tri.triangles.tools.harmonic import laplacian
-from img2tri.triangles.tools.smoothing import DAMPING, cotangent, uniform
+from img2tri.triangles.tools.cotangent_laplacian import laplacian
+from img2tri.triangles.tools.laplacian_smoothing import DAMPING, cotangent, uniform
 from img2tri.triangles.tools.topology import curve_vertices, unique_edges
 
 

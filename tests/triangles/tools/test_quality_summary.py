@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from img2tri.errors import MeshError, ParameterError
-from img2tri.triangles.tools.metrics import LARGEST, METRICS
-from img2tri.triangles.tools.quality import DEFAULT, assess, measure
+from img2tri.triangles.tools.quality_summary import DEFAULT, assess, measure
+from img2tri.triangles.tools.triangle_metrics import LARGEST, METRICS
 
 VERDICT = sorted(set(METRICS) - {"q", "shortest_edge", "longest_edge"})
 

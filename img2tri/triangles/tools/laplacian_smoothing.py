@@ -21,8 +21,8 @@ from numpy.typing import ArrayLike
 from scipy.sparse import diags_array
 
 from img2tri.errors import ParameterError, choice, integer
-from img2tri.triangles.tools.fairing import Bounds, fair_curves
-from img2tri.triangles.tools.harmonic import carry, laplacian, smooth_field
+from img2tri.triangles.tools.cotangent_laplacian import carry, laplacian, smooth_field
+from img2tri.triangles.tools.curve_fairing import Bounds, fair_curves
 from img2tri.triangles.tools.inversion_guard import put_back, sines
 from img2tri.triangles.tools.mesh_checks import check_mesh, check_regions, check_selection
 from img2tri.triangles.tools.topology import adjacency, curve_vertices

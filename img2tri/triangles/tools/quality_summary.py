@@ -1,7 +1,6 @@
 """How good the triangles of a mesh are, in numbers: every one measured, their summary and their histogram.
 
-In: vertices and triangles. Out: one number per triangle for each metric of `img2tri.triangles.tools.metrics`, and the record that sums
-them up.
+In: vertices and triangles. Out: one number per triangle for each metric of `triangle_metrics`, and the record that sums them up.
 """
 
 from __future__ import annotations
@@ -15,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from img2tri.errors import choice, integer
 from img2tri.triangles.tools.mesh_checks import check_mesh
-from img2tri.triangles.tools.metrics import METRICS, Geometry
+from img2tri.triangles.tools.triangle_metrics import METRICS, Geometry
 from img2tri.types import Floats, Ints
 
 DEFAULT = ("q", "min_angle", "max_angle", "radius_ratio", "area", "shortest_edge", "longest_edge")
