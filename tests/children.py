@@ -20,6 +20,7 @@ import time
 from pathlib import Path
 
 GIGABYTE = 2**30
+PATIENCE = 600.0  # s: what a process may take that is not to hang, on a machine busy with other work
 HERE = Path(__file__).parent
 
 
@@ -37,7 +38,7 @@ class Outcome:
     peak: int = 0
 
 
-def run(function, cases, *, seconds=10.0, memory=4 * GIGABYTE, start_up=60.0):
+def run(function, cases, *, seconds=10.0, memory=4 * GIGABYTE, start_up=PATIENCE):
     """Give every case to ``"module:name"`` in a child; return an `Outcome` for each."""
     outcomes: list[Outcome] = []
     with tempfile.TemporaryDirectory() as folder:

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from children import PATIENCE
 
 import img2tri
 
@@ -172,7 +173,7 @@ def _run(tool, *arguments):
     program = shutil.which(tool, path=f"{Path(sys.executable).parent}:{Path(sys.exec_prefix) / 'bin'}") or shutil.which(tool)
     if program is None:
         pytest.skip(f"{tool} is not installed")
-    done = subprocess.run([program, *arguments], cwd=ROOT, capture_output=True, text=True, check=False, timeout=300)
+    done = subprocess.run([program, *arguments], cwd=ROOT, capture_output=True, text=True, check=False, timeout=PATIENCE)
     assert done.returncode == 0, done.stdout + done.stderr
 
 

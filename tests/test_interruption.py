@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import specimens
+from children import PATIENCE
 
 from img2tri import mesh_image
 from img2tri.errors import FileError
@@ -57,12 +58,12 @@ for path in paths:
 
 def test_a_full_disk_leaves_the_older_files_whole(tmp_path):
     done = child(FULL, tmp_path, *FORMATS, stdout=subprocess.PIPE)
-    out, err = done.communicate(timeout=60)
+    out, err = done.communicate(timeout=PATIENCE)
     assert out.decode().split("\n") == ["FileError True"] * len(FORMATS) + [""], err
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == {f"mesh{suffix}": OLD for suffix in FORMATS}
 
 
-STOPPED = """
+STOPPED = f"""
 import os, sys, time
 from pathlib import Path
 from img2tri.views.formats import atomic_write as storing
@@ -70,7 +71,7 @@ wait = os.fsync
 def slow(number):
     wait(number)
     print("written", flush=True)
-    time.sleep(30)
+    time.sleep({PATIENCE:g})
 os.fsync = slow
 storing.store(storing.writable(sys.argv[1], [".stl"]), b"new" * 1000)
 """
@@ -80,9 +81,10 @@ def stopped(path, how):
     with child(STOPPED, path, stdout=subprocess.PIPE) as process:
         assert process.stdout.readline() == b"written\n"
         process.send_signal(how)
-        process.wait(timeout=20)
+        process.wait(timeout=PATIENCE)
 
 
+@pytest.mark.usefixtures("ctrl_c")
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL])
 @pytest.mark.parametrize("there", [True, False])
 def test_a_stopped_process_leaves_the_older_file_whole(tmp_path, how, there):
@@ -95,6 +97,7 @@ def test_a_stopped_process_leaves_the_older_file_whole(tmp_path, how, there):
         assert path.read_bytes() == OLD
 
 
+@pytest.mark.usefixtures("ctrl_c")
 def test_ctrl_c_leaves_no_litter(tmp_path):
     stopped(tmp_path / "mesh.stl", signal.SIGINT)
     assert list(tmp_path.iterdir()) == []
@@ -116,7 +119,7 @@ def test_a_process_killed_at_any_moment(tmp_path):
     path = tmp_path / "mesh.stl"
     with child(code, path, stdout=subprocess.PIPE) as process:
         process.stdout.readline()
-        deadline = time.monotonic() + 20
+        deadline = time.monotonic() + PATIENCE
         while not path.exists() and time.monotonic() < deadline:
             time.sleep(0.01)
         time.sleep(0.05)

@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import specimens
+from children import PATIENCE
 from PIL import Image
 
 from img2tri import mesh_image
@@ -110,7 +111,7 @@ def hook(event, arguments):
         raise ZeroDivisionError("a mistake")
     if name.endswith("waits.png"):
         os.close(os.open(f"{name}.{os.getpid()}", os.O_CREAT | os.O_WRONLY))
-        time.sleep(60)
+        time.sleep(600)
 
 sys.addaudithook(hook)
 """
@@ -190,16 +191,16 @@ def test_a_mistake_of_ours_in_a_worker_is_not_hidden(images):
 
 @pytest.mark.skipif(os.name == "nt", reason="signals to groups of processes are those of POSIX")
 @pytest.mark.parametrize("workers", ["1", "2"])
-@pytest.mark.usefixtures("hooked")
+@pytest.mark.usefixtures("hooked", "ctrl_c")
 def test_ctrl_c_stops_all_workers_and_leaves_nothing(images, tmp_path, workers):
     names = images("1waits.png", "2waits.png", "3waits.png")
     command = [sys.executable, "-m", "img2tri", "mesh", *names, "--out-dir", "out", "--workers", workers]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True, text=True) as process:
-        deadline = time.monotonic() + 30
+        deadline = time.monotonic() + PATIENCE
         while len(waiting := list(tmp_path.glob("*waits.png.*"))) < int(workers) and time.monotonic() < deadline:
             time.sleep(0.02)
         os.killpg(process.pid, signal.SIGINT)  # as a terminal does
-        out, err = process.communicate(timeout=10)
+        out, err = process.communicate(timeout=PATIENCE)
     assert (process.returncode, out, err) == (130, "", "")
     assert len(waiting) == int(workers)
     for path in waiting:

@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import specimens
+from children import PATIENCE
 from PIL import Image
 
 import img2tri
@@ -118,7 +119,7 @@ def _complaint(capsys):
 def _process(*arguments, **given):
     command = [sys.executable, "-m", "img2tri", *arguments]
     env = os.environ | {"PYTHONPATH": str(Path(img2tri.__file__).parents[1])}  # from any folder
-    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=120, env=env, **given)
+    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=PATIENCE, env=env, **given)
 
 
 # ---- options ----
@@ -637,7 +638,9 @@ def _stdin(monkeypatch, path, terminal=False):
 
 
 def _piped(data, *arguments, **given):
-    return subprocess.run([sys.executable, "-m", "img2tri", *arguments], input=data, capture_output=True, check=False, timeout=60, **given)
+    return subprocess.run(
+        [sys.executable, "-m", "img2tri", *arguments], input=data, capture_output=True, check=False, timeout=PATIENCE, **given
+    )
 
 
 @pytest.mark.parametrize(("suffix", "more"), [("stl", ["--height", "5"]), ("ply", []), ("vtu", []), ("geojson", ["--edge-length", "5"])])
@@ -689,7 +692,7 @@ def test_stdin_without_end_is_refused():
         pytest.skip("no /dev/zero")
     with open("/dev/zero", "rb") as zeros:
         command = [sys.executable, "-m", "img2tri", "mesh", "-", "--max-pixels", "100000"]
-        done = subprocess.run(command, stdin=zeros, capture_output=True, text=True, check=False, timeout=60)
+        done = subprocess.run(command, stdin=zeros, capture_output=True, text=True, check=False, timeout=PATIENCE)
     assert done.returncode == 2
     assert "expected at most 1848576 bytes, 8 for each of --max-pixels 100000, found more in '<stdin>'" in done.stderr
 
@@ -759,7 +762,7 @@ def test_a_full_disk_behind_stdout_is_one_line(typed, disc):
         pytest.skip("no /dev/full")
     with open("/dev/full", "wb") as full:
         command = [sys.executable, "-m", "img2tri", "mesh", disc, *typed]
-        done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False, timeout=60)
+        done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False, timeout=PATIENCE)
     assert done.returncode == 2
     assert done.stderr.splitlines()[-1] == "img2tri: stdout: cannot be written: No space left on device"
     assert "Traceback" not in done.stderr

@@ -11,6 +11,7 @@ from html.parser import HTMLParser
 
 import numpy as np
 import pytest
+from children import PATIENCE
 from oracles import angles
 from PIL import Image
 from views.plates import ring, strip
@@ -340,7 +341,7 @@ def browse(path, *flags, fragment=""):
         pytest.skip(f"none of {', '.join(BROWSERS)} is installed")
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         command = [program, *FLAGS, f"--user-data-dir={folder}", *flags, f"{path.as_uri()}{fragment}"]
-        run = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
+        run = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE, check=True)
     assert "Uncaught" not in run.stderr, run.stderr
     assert "Refused to" not in run.stderr, run.stderr
     return run.stdout

@@ -8,6 +8,7 @@ import subprocess
 import meshio
 import numpy as np
 import pytest
+from children import PATIENCE
 from views.plates import cells
 from views.solver_meshes import BOUNDS, HEIGHT, KINDS, TEXTS, made, plate, program, sizes
 
@@ -85,7 +86,7 @@ def run(folder, text):
     """The reactions (x, y, z) that CalculiX prints last."""
     ccx = program("ccx")
     (folder / "job.inp").write_bytes(text)
-    done = subprocess.run([ccx, "job"], cwd=folder, capture_output=True, text=True, check=False, timeout=60)
+    done = subprocess.run([ccx, "job"], cwd=folder, capture_output=True, text=True, check=False, timeout=PATIENCE)
     assert done.returncode == 0, done.stdout
     assert "ERROR" not in done.stdout, done.stdout
     assert "WARNING" not in done.stdout, done.stdout

@@ -9,6 +9,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 import pyvista as pv
+from children import PATIENCE
 from views.solver_meshes import KINDS, TAGS, TEXTS, made, python_with, sizes
 
 from img2tri.views.formats.solvers.xdmf import xdmf
@@ -53,7 +54,7 @@ def test_fenicsx_finds_every_part_with_its_size(tmp_path):
         written(tmp_path, made(kind), kind)
     written(tmp_path, made("triangle"), "timed", timed=True)
     stems = [*KINDS[:2], "timed"]
-    done = subprocess.run([python, "-c", FENICSX, *stems], cwd=tmp_path, capture_output=True, text=True, check=False, timeout=300)
+    done = subprocess.run([python, "-c", FENICSX, *stems], cwd=tmp_path, capture_output=True, text=True, check=False, timeout=PATIENCE)
     assert done.returncode == 0, done.stderr
     found = [json.loads(line) for line in done.stdout.splitlines() if line.startswith("[")]
     assert len(found) == len(stems)
