@@ -37,7 +37,7 @@ LIBRARIES = {
     "raster": {"cv2", "PIL", "tifffile", "pydicom", "nibabel", "scipy"},  # scipy joins runs of pixels to components
     "shapes": {"shapely", "scipy", "cv2"},  # cv2 measures distances to the places where lengths are given
     "triangles": {"scipy", "igl", "pythoncdt", "shapely"},
-    "views": {"skfem", "trimesh", "pyvista", "vtkmodules", "matplotlib"},
+    "views": {"skfem", "trimesh", "pyvista", "vtkmodules", "matplotlib", "PIL"},  # PIL writes the pictures of pages
     "paper": {"cv2", "pythoncdt", "scipy", "shapely"},  # cv2 traces its contours
     "recipes": {"scipy"},
     "certificate": {"shapely", "scipy"},

@@ -94,7 +94,7 @@ def view(job: Job, command: str, progress: Progress) -> tuple[list[str], str]:
     """Mesh an image; return what there is to say about the mesh, and a page about it."""
     from img2tri.pipeline import mesh_image
     from img2tri.triangles.tools.quality_summary import measure
-    from img2tri.views.figures.html_page import page
+    from img2tri.views.page.html_page import page
 
     image = opened(job.image, job.options)
     mesh = mesh_image(image, progress=progress, **job.options)

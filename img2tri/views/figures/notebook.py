@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from img2tri.types import Bools, Floats, Ints
 from img2tri.views.figures.colours import palette
+from img2tri.views.figures.corner_angles import corner_angles
 from img2tri.views.objects.edges import bordering, unique_edges
 from img2tri.views.objects.surface import per_triangle, plane_mesh
 
@@ -78,15 +79,7 @@ def html(vertices: ArrayLike, triangles: ArrayLike, regions: ArrayLike | None = 
 def _numbers(vertices: Floats, triangles: Ints, labels: NDArray[np.generic]) -> str:
     counts = {"triangle triangles": len(triangles), "vertex vertices": len(vertices), "region regions": len(np.unique(labels))}
     parts = [f"{count:,} {words.split()[count != 1]}" for words, count in counts.items()]
-    return " · ".join([*parts, f"smallest angle {_smallest_angle(vertices, triangles):.1f}°"])
-
-
-def _smallest_angle(vertices: Floats, triangles: Ints) -> float:
-    """Return the smallest of all angles in degrees, whichever way the triangles are wound."""
-    corners = vertices[triangles]
-    ahead, back = np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners
-    cross = ahead[..., 0] * back[..., 1] - ahead[..., 1] * back[..., 0]
-    return float(np.rad2deg(np.arctan2(np.abs(cross), (ahead * back).sum(axis=2)).min()))
+    return " · ".join([*parts, f"smallest angle {np.rad2deg(corner_angles(vertices, triangles).min()):.1f}°"])
 
 
 def _places(vertices: Floats, *, upward: bool) -> tuple[Ints, tuple[int, int]]:

@@ -16,7 +16,8 @@ from numpy.typing import ArrayLike
 
 from img2tri.errors import choice
 from img2tri.types import Floats, Frame, Ints
-from img2tri.views.figures import panels
+from img2tri.views.figures import figure_parts as parts
+from img2tri.views.figures.corner_angles import corner_angles
 from img2tri.views.formats.atomic_write import known_suffix, store, writable
 from img2tri.views.objects.surface import per_triangle, plane_mesh
 
@@ -92,26 +93,26 @@ def draw(
     if colour_by is not None:
         choice("colour_by", colour_by, ["quality", "region"])
     labels = np.ones(len(t), np.int64) if regions is None else per_triangle("regions", regions, len(t))
-    angles = _angles(v, t)
+    angles = corner_angles(v, t)
     # r / R = 4 sin(A/2) sin(B/2) sin(C/2) in every triangle.
     quality = 8 * np.sin(angles / 2).prod(axis=1) if values is None else per_triangle("values", values, len(t))
     quality = np.nan_to_num(quality.astype(np.float64)).clip(0, 1)
-    picture = None if image is None else panels.as_picture(image)
+    picture = None if image is None else parts.as_picture(image)
     if frame is None and picture is not None:
         frame = Frame((picture.shape[0], picture.shape[1]))
 
     filled = colour_by == "quality"
-    named = colour_by == "region" and len(np.unique(labels)) <= panels.LEGEND
+    named = colour_by == "region" and len(np.unique(labels)) <= parts.LEGEND
     words = _title(v, t, angles) if title is None else title
-    page = panels.make_page(v, frame, title=words, strip=filled, column=histogram or named)
+    page = parts.make_page(v, frame, title=words, strip=filled, column=histogram or named)
     if picture is not None and frame is not None:
-        panels.draw_image(page, picture, frame, faint=colour_by is not None)
-    panels.draw_mesh(page, v, t, labels=labels, quality=quality, colour_by=colour_by)
-    foot = panels.draw_legend(page, labels) if named else 0.0
+        parts.draw_image(page, picture, frame, faint=colour_by is not None)
+    parts.draw_mesh(page, v, t, labels=labels, quality=quality, colour_by=colour_by)
+    foot = parts.draw_legend(page, labels) if named else 0.0
     if filled:
-        panels.draw_colours(page, label)
+        parts.draw_colours(page, label)
     if histogram:
-        panels.draw_histogram(page, quality if filled else np.rad2deg(angles.min(axis=1)), coloured=filled, foot=foot)
+        parts.draw_histogram(page, quality if filled else np.rad2deg(angles.min(axis=1)), coloured=filled, foot=foot)
     if target is not None:
         store(target, _rendered(page.figure, known_suffix(target, SUFFIXES)))
     return page.figure
@@ -120,18 +121,8 @@ def draw(
 def _title(vertices: Floats, triangles: Ints, angles: Floats) -> str:
     p, q, r = (vertices[triangles[:, i]] for i in range(3))
     turned = int(np.sum((q - p)[:, 0] * (r - p)[:, 1] < (q - p)[:, 1] * (r - p)[:, 0]))
-    parts = [f"{len(vertices):,} vertices", f"{len(triangles):,} triangles", f"smallest angle {np.rad2deg(angles.min()):.1f}°"]
-    return " · ".join(parts + [f"{turned:,} turned over"] * (turned > 0))
-
-
-def _angles(vertices: Floats, triangles: Ints) -> Floats:
-    """Return the angle at each corner of each triangle, (m, 3) in radians, whichever way it is wound."""
-    corners = vertices[triangles]
-    to_next = np.roll(corners, -1, axis=1) - corners
-    to_last = np.roll(corners, 1, axis=1) - corners
-    cross = to_next[..., 0] * to_last[..., 1] - to_next[..., 1] * to_last[..., 0]
-    angles: Floats = np.arctan2(np.abs(cross), (to_next * to_last).sum(axis=2))
-    return angles
+    words = [f"{len(vertices):,} vertices", f"{len(triangles):,} triangles", f"smallest angle {np.rad2deg(angles.min()):.1f}°"]
+    return " · ".join(words + [f"{turned:,} turned over"] * (turned > 0))
 
 
 def _rendered(figure: Figure, suffix: str) -> bytes:

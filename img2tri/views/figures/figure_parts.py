@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from img2tri.errors import ParameterError
-from img2tri.types import Bools, Floats, Frame, Ints
+from img2tri.types import Floats, Frame, Ints
 from img2tri.views.figures.colours import palette
+from img2tri.views.objects.edges import bordering, unique_edges
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -120,7 +121,8 @@ def draw_mesh(page: Page, vertices: Floats, triangles: Ints, *, labels: NDArray[
     """Draw the triangles filled, with their edges where there is room, and their borders; or, by None, red edges alone."""
     from matplotlib.collections import LineCollection, PolyCollection
 
-    edges, borders = _edges(triangles, labels, len(vertices))
+    edges, sides = unique_edges(triangles)
+    borders = bordering(sides, labels)
     lines: Any = vertices[edges]
     corners: Any = vertices[triangles]
     # Each edge as wide as its own length allows, so that a graded mesh stays light where it is fine.
@@ -221,13 +223,3 @@ def _axes(figure: Figure, left: float, bottom: float, width: float, height: floa
     for spine in made.spines.values():
         spine.set(color=_FAINT, linewidth=0.6)
     return made
-
-
-def _edges(triangles: Ints, labels: NDArray[Any], n: int) -> tuple[Ints, Bools]:
-    """Return each edge once, (e, 2), and which of them bound the mesh or part two regions."""
-    sides = np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1)
-    keys, first, place, counts = np.unique(sides[:, 0] * n + sides[:, 1], return_index=True, return_inverse=True, return_counts=True)
-    label = np.tile(labels, 3)
-    parted = np.zeros(len(keys), bool)
-    parted[place[label != label[first][place]]] = True
-    return sides[first], (counts == 1) | parted

@@ -1,8 +1,8 @@
 """A page about a mesh: the mesh, its image and its certificate -> one HTML file that needs nothing but itself.
 
 The page holds the image as a PNG, the mesh as raw arrays in base64, the certificate as JSON, and the script that draws them; it is read
-without a network, by any browser, years later. What it says in words and tables is in `img2tri.views.figures.html_tables` and
-`img2tri.views.figures.histogram`; how it looks and draws, in page.html and page.js beside this file.
+without a network, by any browser, years later. What it says in words and tables is in `img2tri.views.page.html_tables` and
+`img2tri.views.page.histogram_svg`; how it looks and draws, in page.html and page.js beside this file.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from numpy.typing import ArrayLike, NDArray
 from img2tri import __version__
 from img2tri.errors import MeshError
 from img2tri.types import Floats, Frame, Ints
-from img2tri.views.figures import html_tables as tables
 from img2tri.views.figures.colours import palette
-from img2tri.views.figures.histogram import RAMP, chart
-from img2tri.views.figures.png import png
 from img2tri.views.objects.bodies import unique_names
 from img2tri.views.objects.edges import bordering, unique_edges
 from img2tri.views.objects.surface import per_triangle, plane_mesh
+from img2tri.views.page import html_tables as tables
+from img2tri.views.page.histogram_svg import RAMP, chart
+from img2tri.views.page.image_png import png
 
 _PIXELS = 4096  # of the image along either side; more are thinned out, as browsers refuse much larger ones
 _LARGEST_ANGLE = 60.0
@@ -190,4 +190,4 @@ def _inert(text: str) -> str:
 
 
 def _resource(name: str) -> str:
-    return files("img2tri.views.figures").joinpath(name).read_text(encoding="utf-8")
+    return files("img2tri.views.page").joinpath(name).read_text(encoding="utf-8")
