@@ -19,9 +19,9 @@ from img2tri.paper.delaunay import centroid_filter, delaunay
 from img2tri.paper.grid import mask_filter, structured_grid
 from img2tri.paper.poisson_disk import poisson_disk
 from img2tri.paper.recipes import CLOSENESS, structured_mesh, unstructured_mesh
-from img2tri.raster.io.reading import read
-from img2tri.raster.labels.gray import to_gray
-from img2tri.raster.labels.thresholds import binarize
+from img2tri.raster.labels.colours_to_gray import to_gray
+from img2tri.raster.labels.otsu_threshold import binarize
+from img2tri.raster.reading import read
 from img2tri.triangles.tools.laplacian_smoothing import uniform
 from img2tri.triangles.tools.quality_summary import assess
 from img2tri.triangles.tools.topology import adjacency

@@ -254,7 +254,7 @@ class TriangleMesh:
         colour_by
             "quality", "region", or None for red edges as in the paper's figures.
         """
-        from img2tri.raster.io.reading import read
+        from img2tri.raster.reading import read
         from img2tri.views.figures.plot import draw
 
         values = None if image is None else read(image).values

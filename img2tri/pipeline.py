@@ -12,12 +12,12 @@ from typing import Any, TypedDict, Unpack
 from img2tri.errors import ImageError, ParameterError, choice, finite, flag, integer, shown
 from img2tri.mesh import TriangleMesh
 from img2tri.paper.recipes import paper_mesh
-from img2tri.raster.io.fingerprint import image_hash
-from img2tri.raster.io.reading import read
+from img2tri.raster.arrays.image_hash import image_hash
 from img2tri.raster.labels.cropping import crop as cropped
 from img2tri.raster.labels.label_maps import label, picked
-from img2tri.raster.labels.segmentation import cleaned, find_zones
-from img2tri.raster.labels.thresholds import Level
+from img2tri.raster.labels.otsu_threshold import Level
+from img2tri.raster.labels.segmentation import segment, without_specks
+from img2tri.raster.reading import read
 from img2tri.recipes.conforming import conform, trace_outlines, wanted_sizes
 from img2tri.shapes.periodic import check_periodic
 from img2tri.shapes.polygons import enclosed_areas
@@ -193,9 +193,9 @@ def mesh_image(
     tell("labels", 0.1)
     if recipe != "conforming" and threshold is None and not labels:
         threshold = PAPER_THRESHOLD
-    zones = find_zones(picture, threshold=threshold, labels=labels, background=background, invert=invert)
+    zones = segment(picture, threshold=threshold, labels=labels, background=background, invert=invert)
     speck = None if min_area is None else frame.area("min_area", min_area) / math.prod(frame.spacing)
-    zones, removed = cleaned(zones, min_area=speck, largest=largest, connectivity=connectivity)
+    zones, removed = without_specks(zones, min_area=speck, largest=largest, connectivity=connectivity)
     check_periodic(periodic, zones.labels, recipe=recipe, smoothing=smoothing)
 
     tell("outlines", 0.2)

@@ -9,10 +9,10 @@ import cv2
 import numpy as np
 import pytest
 
-from img2tri.raster.io.reading import read
-from img2tri.raster.labels.gray import to_gray
+from img2tri.raster.labels.colours_to_gray import to_gray
 from img2tri.raster.labels.label_maps import distinct, label_map
-from img2tri.raster.labels.thresholds import binarize
+from img2tri.raster.labels.otsu_threshold import binarize
+from img2tri.raster.reading import read
 
 DATA = Path(__file__).parents[1] / "data"
 NAMES = ["femur.png", "femur_gray.png", "blobs.png", "blob_with_holes.png", "plate.png", "polycrystal.png", "gear.png"]

@@ -19,7 +19,7 @@ from img2tri.cli.streams import DASH, STEM, check_stdin, check_stdout
 from img2tri.errors import FileError, ParameterError, finite
 
 if TYPE_CHECKING:
-    from img2tri.raster.io.byte_sources import Source
+    from img2tri.raster.files.byte_sources import Source
 
 USUAL_FORMAT = ".ply"  # keeps all digits and the regions, and is read everywhere
 SEVERAL_FILES = (".xdmf",)

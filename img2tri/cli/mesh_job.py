@@ -18,7 +18,7 @@ from img2tri.errors import Img2triError
 
 if TYPE_CHECKING:
     from img2tri.mesh import TriangleMesh
-    from img2tri.raster.io.byte_sources import Source
+    from img2tri.raster.files.byte_sources import Source
 
 Progress = Callable[[str, float], None]
 
@@ -133,8 +133,8 @@ def opened(image: str, options: dict[str, Any]) -> str | Source:
 
 def pixels(image: str | Source, options: dict[str, Any]) -> Any:
     """Read the part of an image that was meshed."""
-    from img2tri.raster.io.reading import read
     from img2tri.raster.labels.cropping import crop
+    from img2tri.raster.reading import read
 
     return crop(read(image, **_of(options, "spacing", "origin", "page", "max_pixels")), options.get("crop")).values
 

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 from img2tri.errors import FileError, Img2triError
 
 if TYPE_CHECKING:
-    from img2tri.raster.io.byte_sources import Source
+    from img2tri.raster.files.byte_sources import Source
 
 DASH = "-"
 STEM = "stdin"  # takes the place of a name
@@ -34,10 +34,10 @@ def check_stdin() -> None:
 
 def from_stdin(**given: Any) -> Source:
     """Hold the bytes of stdin, as an image or a mesh to be read; `given` may have `max_pixels`, which limits them."""
-    from img2tri.raster.io.byte_sources import source
+    from img2tri.raster.files.byte_sources import source_of
 
     check_stdin()
-    return source(sys.stdin.buffer, **given)
+    return source_of(sys.stdin.buffer, **given)
 
 
 def check_stdout(suffix: str) -> None:

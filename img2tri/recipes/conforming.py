@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from img2tri.errors import ParameterError, finite
-from img2tri.raster.labels.segmentation import Zones
+from img2tri.raster.labels.segmentation import Segmentation
 from img2tri.shapes.periodic import FILLINGS, Twins, find_twins
 from img2tri.shapes.place.padded_chains import Points
 from img2tri.shapes.place.placement import place, place_on_sides
@@ -47,7 +47,7 @@ ATTEMPTS = 12  # rounds of refining the outlines; two are the most that ordinary
 
 
 def trace_outlines(
-    zones: Zones, frame: Frame, *, connectivity: int = 4, corners: str = "auto", outline: str = "smooth", periodic: str | None = None
+    zones: Segmentation, frame: Frame, *, connectivity: int = 4, corners: str = "auto", outline: str = "smooth", periodic: str | None = None
 ) -> tuple[Outlines, Links]:
     """Trace the outlines of all regions of a label map, as fine as the pixels.
 

@@ -8,14 +8,14 @@ import pytest
 import specimens
 
 from img2tri import mesh_image
-from img2tri.raster.labels.segmentation import Zones
+from img2tri.raster.labels.segmentation import Segmentation
 from img2tri.recipes import conforming
 from img2tri.recipes.conforming import Sizes, conform, trace_outlines
 from img2tri.types import Frame
 
 
 def check(labels, *, background=0, edge_length=8.0):
-    outlines, links = trace_outlines(Zones(labels, background), Frame(labels.shape))
+    outlines, links = trace_outlines(Segmentation(labels, background), Frame(labels.shape))
     made = conform(outlines, links, Sizes(edge_length))
     regions = outlines.labels[made.regions]
     oracles.check_valid(made.vertices, made.triangles)

@@ -15,7 +15,7 @@ import numpy as np
 from img2tri.errors import ParameterError, finite, shown
 from img2tri.types import Picture
 
-ROUNDING = 1e-6  # px: a side this close to a side of pixels is meant to lie on it
+SIDE_ROUNDING = 1e-6  # px: a side this close to a side of pixels is meant to lie on it
 
 
 def crop(picture: Picture, box: Sequence[float] | None) -> Picture:
@@ -80,5 +80,5 @@ def _numbers(box: Sequence[float]) -> tuple[float, float, float, float]:
 
 def _touched(low: float, high: float) -> tuple[int, int]:
     """Return the first and the one after the last of the pixels between two places along a row or column."""
-    first = math.floor(low + ROUNDING)
-    return first, max(first + 1, math.ceil(high - ROUNDING))
+    first = math.floor(low + SIDE_ROUNDING)
+    return first, max(first + 1, math.ceil(high - SIDE_ROUNDING))

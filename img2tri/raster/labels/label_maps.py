@@ -16,12 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from img2tri.errors import ImageError, ParameterError, integer, shown
-from img2tri.raster.io.pixel_arrays import Pixels, pixels
-from img2tri.raster.labels.gray import alpha_is_the_picture
+from img2tri.raster.arrays.array_checks import Pixels, pixels
+from img2tri.raster.labels.colours_to_gray import alpha_is_the_picture
 
-SHOWN = 20  # labels listed in a message
+LISTED_LABELS = 20  # labels listed in a message
 MOST_LABELS = 2**24  # in a list
-EXACT = 2.0**53  # whole numbers up to here are exact as float64
+EXACT_FLOATS = 2.0**53  # whole numbers up to here are exact as float64
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +109,7 @@ def _whole(values: Pixels) -> NDArray[Any]:
         return values.view(np.uint8)
     if values.dtype.kind == "f":
         least, greatest = float(values.min()), float(values.max())
-        if not -EXACT <= least <= greatest <= EXACT:
+        if not -EXACT_FLOATS <= least <= greatest <= EXACT_FLOATS:
             raise ImageError(f"labels: expected whole numbers of at most 53 bits, found floats from {least:g} to {greatest:g}")
         whole = values.astype(np.int32 if max(-least, greatest) < 2**31 else np.int64)
         if not (whole == values).all():
@@ -174,6 +174,6 @@ def _check_found(numbers: NDArray[Any], chosen: list[int]) -> None:
     present = set(found.tolist())
     missing = [label for label in chosen if label not in present]
     if missing:
-        more = f" and {len(found) - SHOWN} more" if len(found) > SHOWN else ""
-        listed = ", ".join(map(str, found[:SHOWN].tolist()))
+        more = f" and {len(found) - LISTED_LABELS} more" if len(found) > LISTED_LABELS else ""
+        listed = ", ".join(map(str, found[:LISTED_LABELS].tolist()))
         raise ImageError(f"labels: expected values of the image, found {missing[0]}, which is not one; there are {listed}{more}")

@@ -1,4 +1,4 @@
-"""Picture -> zones: the label map to be meshed, and the gray values that place its outlines, if they say more than the labels."""
+"""Picture -> segmentation: the label map to be meshed, and the gray values that place its outlines, if they say more than the labels."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from img2tri.errors import ParameterError
-from img2tri.raster.labels.cleaning import Removed, clean
-from img2tri.raster.labels.gray import to_gray
+from img2tri.raster.labels.colours_to_gray import to_gray
 from img2tri.raster.labels.label_maps import LabelMap, label_map
-from img2tri.raster.labels.thresholds import Level, binarize
+from img2tri.raster.labels.otsu_threshold import Level, binarize, two_valued
+from img2tri.raster.labels.specks_and_holes import Removed, clean
 from img2tri.types import Picture
 
 
 @dataclass(frozen=True, eq=False)
-class Zones:
+class Segmentation:
     """What of a picture is to be meshed.
 
     Attributes
@@ -42,24 +42,24 @@ class Zones:
     level: float | None = None
 
 
-def find_zones(
+def segment(
     picture: Picture,
     *,
     threshold: float | str | None = None,
     labels: bool | Iterable[int] | None = None,
     background: int | None = 0,
     invert: bool = False,
-) -> Zones:
-    """Find one white zone, label 1, or the regions of a label map.
+) -> Segmentation:
+    """Find the foreground, label 1, or the regions of a label map.
 
     Parameters
     ----------
     picture
         From `read`.
     threshold, invert
-        As for `binarize`; of one white zone only.
+        As for `binarize`; of the foreground only.
     labels, background
-        As for `label_map`; None or False looks for one white zone.
+        As for `label_map`; None or False parts foreground from background.
 
     Raises
     ------
@@ -68,9 +68,9 @@ def find_zones(
 
     Examples
     --------
-    >>> from img2tri.raster.io.reading import read
-    >>> zones = find_zones(read(np.array([[10, 90, 200]], np.uint8)), threshold=100)
-    >>> zones.labels, zones.level
+    >>> from img2tri.raster.reading import read
+    >>> found = segment(read(np.array([[10, 90, 200]], np.uint8)), threshold=100)
+    >>> found.labels, found.level
     (array([[False, False,  True]]), 100.5)
     """
     if labels is not None and labels is not False:
@@ -78,30 +78,24 @@ def find_zones(
             if value is not None:
                 raise ParameterError(f"{name}: expected to be left out with labels, whose values are regions as they are, found {value!r}")
         numbers = label_map(picture.values, labels=labels, background=background)
-        return Zones(numbers.values, numbers.background)
+        return Segmentation(numbers.values, numbers.background)
     gray = to_gray(picture.values, palette=picture.notes.get("palette"))
     mask, chosen = binarize(gray, threshold=threshold, invert=invert)
-    if chosen.how == "given" and not _two_valued(gray):
+    if chosen.how == "given" and not two_valued(gray):
         # Strictly greater is foreground: of whole numbers the level lies between two.
         whole = np.issubdtype(gray.dtype, np.integer)
-        return Zones(mask, 0, chosen, gray, float(np.floor(chosen.value)) + 0.5 if whole else chosen.value)
-    return Zones(mask, 0, chosen, gray if chosen.how == "otsu" and not _two_valued(gray) else None)
+        return Segmentation(mask, 0, chosen, gray, float(np.floor(chosen.value)) + 0.5 if whole else chosen.value)
+    return Segmentation(mask, 0, chosen, gray if chosen.how == "otsu" and not two_valued(gray) else None)
 
 
-def cleaned(zones: Zones, *, min_area: float | None, largest: bool, connectivity: int) -> tuple[Zones, Removed]:
+def without_specks(found: Segmentation, *, min_area: float | None, largest: bool, connectivity: int) -> tuple[Segmentation, Removed]:
     """Remove specks and small holes, or all but the largest components, as `clean` does; `min_area` in pixels.
 
     Examples
     --------
-    >>> zones, removed = cleaned(Zones(np.eye(3, dtype=bool), 0), min_area=2, largest=False, connectivity=4)
-    >>> zones.labels.any(), removed["specks"]
+    >>> found, removed = without_specks(Segmentation(np.eye(3, dtype=bool), 0), min_area=2, largest=False, connectivity=4)
+    >>> found.labels.any(), removed["specks"]
     (np.False_, 3)
     """
-    labels, removed = clean(LabelMap(zones.labels, zones.background), min_area=min_area, largest=largest, connectivity=connectivity)
-    return replace(zones, labels=labels.values, background=labels.background), removed
-
-
-def _two_valued(gray: NDArray[Any]) -> bool:
-    """Whether an image has at most two different values."""
-    low, high = gray.min(), gray.max()
-    return bool(((gray == low) | (gray == high)).all())
+    labels, removed = clean(LabelMap(found.labels, found.background), min_area=min_area, largest=largest, connectivity=connectivity)
+    return replace(found, labels=labels.values, background=labels.background), removed

@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from img2tri.errors import ParameterError
-from img2tri.raster.io.reading import read
 from img2tri.raster.labels.cropping import crop
+from img2tri.raster.reading import read
 from img2tri.types import Frame, Picture
 
 ROWS = np.arange(20 * 30).reshape(20, 30)

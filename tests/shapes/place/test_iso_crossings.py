@@ -7,8 +7,8 @@ import pytest
 import specimens
 from scipy import ndimage
 
-from img2tri.raster.io.reading import read
-from img2tri.raster.labels.segmentation import find_zones
+from img2tri.raster.labels.segmentation import segment
+from img2tri.raster.reading import read
 from img2tri.recipes.conforming import trace_outlines
 from img2tri.shapes.place.iso_crossings import HARD, KNOWN, crossings_by_level
 from img2tri.shapes.polygons import region_polygons
@@ -19,7 +19,7 @@ from img2tri.types import Frame
 
 def outlines_of(image, **options):
     picture = read(image)
-    return trace_outlines(find_zones(picture, **options), picture.frame)
+    return trace_outlines(segment(picture, **options), picture.frame)
 
 
 def raw_crossings(gray, level, labels, frame=None):
@@ -182,7 +182,7 @@ def test_of_three_levels_each_edge_is_in_the_middle_of_its_own_sides(middle, bri
         halves = (outlines.points[x < 100], outlines.points[x > 100] - [100, 0])
         return [off_circle(half, radius, c, 100).mean() for half, c in zip(halves, centres, strict=True)]
 
-    zones = find_zones(read(image))
+    zones = segment(read(image))
     assert zones.threshold.how == "otsu"
     assert zones.level is None
     assert np.abs(bias(outlines_of(image)[0])).max() < 0.02

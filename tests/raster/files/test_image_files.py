@@ -18,8 +18,8 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from img2tri.errors import FileError, ImageError, Img2triError, ParameterError
-from img2tri.raster.io.reading import read
-from img2tri.raster.labels.gray import to_gray
+from img2tri.raster.labels.colours_to_gray import to_gray
+from img2tri.raster.reading import read
 
 RNG = np.random.default_rng(1)
 GRAY8 = RNG.integers(0, 256, (13, 17), np.uint8)

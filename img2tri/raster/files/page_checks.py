@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from img2tri.errors import ImageError, ParameterError, shown
-from img2tri.raster.io.byte_sources import Source
-from img2tri.raster.io.metadata import Size
-from img2tri.raster.io.pixel_arrays import Pixels
+from img2tri.raster.arrays.array_checks import Pixels
+from img2tri.raster.files.byte_sources import Source
+from img2tri.raster.metadata.pixel_size import PixelSize
 
-Decoded = tuple[Pixels, dict[str, Any], Size | None]
+Decoded = tuple[Pixels, dict[str, Any], PixelSize | None]
 """Pixels, notes, and the size of a pixel (dx, dy) in millimetres if the file knows it."""
 
 
@@ -25,7 +25,7 @@ def check_page(source: Source, page: int, pages: int, width: int, height: int, m
     return {"pages": pages, "page": page} if pages > 1 else {}
 
 
-def turned(values: Pixels, turn: int, notes: dict[str, Any], size: Size | None) -> Decoded:
+def turned(values: Pixels, turn: int, notes: dict[str, Any], size: PixelSize | None) -> Decoded:
     """Note that an image was turned, and turn the size of its pixels."""
     if turn > 1:
         notes = notes | {"orientation": turn}

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
 from img2tri.errors import ImageError, ParameterError
-from img2tri.raster.labels.thresholds import Level, binarize
+from img2tri.raster.labels.otsu_threshold import Level, binarize
 
 RNG = np.random.default_rng(4)
 TYPES = [np.uint8, np.uint16, np.int8, np.int16, np.uint32, np.int64, np.float32, np.float64]

@@ -17,12 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from img2tri.errors import ParameterError, finite, shown
-from img2tri.raster.labels.components import Components, connected, find_components, joined
+from img2tri.raster.labels.connected_components import Components, connected, find_components, joined
 from img2tri.raster.labels.label_maps import LabelMap
 from img2tri.types import Bools, Ints
 
 LISTED = 100  # components listed in the report at most
-ROUNDING = 1e-9  # limits come from lengths in world units
+AREA_ROUNDING = 1e-9  # limits come from lengths in world units
 
 
 class Removed(TypedDict):
@@ -54,7 +54,7 @@ def clean(labels: LabelMap, *, min_area: float | None = None, largest: bool = Fa
         background, or part of a neighbour if there is no background. Holes are not filled.
     connectivity
         As for the outlines. 4: the foreground of a mask hangs together through the sides of pixels, its background
-        through their corners too; 8: the other way round. For label maps see `components`.
+        through their corners too; 8: the other way round. For label maps see `connected_components`.
 
     Returns
     -------
@@ -83,7 +83,7 @@ def clean(labels: LabelMap, *, min_area: float | None = None, largest: bool = Fa
     >>> removed["specks"], removed["listed"][1]
     (2, {'label': 3, 'area': 1, 'row': 1, 'column': 1, 'became': 1})
     """
-    limit = 0.0 if min_area is None else finite("min_area", min_area, least=0) * (1 - ROUNDING)
+    limit = 0.0 if min_area is None else finite("min_area", min_area, least=0) * (1 - AREA_ROUNDING)
     if connectivity not in (4, 8):
         raise ParameterError(f"connectivity: expected 4 or 8, found {shown(connectivity)}")
     values, removed = labels.values, Removed(specks=0, holes=0, pixels=0, listed=[])

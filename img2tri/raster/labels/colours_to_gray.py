@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from img2tri.raster.io.pixel_arrays import Pixels, pixels
+from img2tri.raster.arrays.array_checks import Pixels, pixels
 
 REC_601 = (0.299, 0.587, 0.114)
 
@@ -33,7 +33,7 @@ def to_gray(values: object, *, palette: Pixels | None = None) -> Pixels:
     Raises
     ------
     ImageError
-        If `values` are not those of an image, see `checking.pixels`.
+        If `values` are not those of an image, see `array_checks.pixels`.
 
     Notes
     -----

@@ -6,7 +6,7 @@ import pytest
 from PIL import Image
 
 from img2tri.errors import ImageError
-from img2tri.raster.labels.gray import alpha_is_the_picture, to_gray
+from img2tri.raster.labels.colours_to_gray import alpha_is_the_picture, to_gray
 
 RNG = np.random.default_rng(3)
 

@@ -7,7 +7,7 @@ import pytest
 import pyvista as pv
 
 from img2tri.errors import ImageError, ParameterError
-from img2tri.raster.io.reading import read
+from img2tri.raster.reading import read
 
 RNG = np.random.default_rng(2)
 

@@ -1,8 +1,7 @@
-"""A file -> the values in it, what was noted while reading, and the size of a pixel in millimetres if the file says it.
+"""PNG, JPEG, TIFF, GIF, BMP and all else that Pillow knows -> values, notes and the size of a pixel in millimetres.
 
-Pillow decodes: it keeps palette indices and bit depth, reports truncated files and knows EXIF. It loses bits in two
-places, which are read otherwise: PNG colours of 16 bit by OpenCV, and TIFFs of types Pillow has no mode for by tifffile. DICOM and
-NIfTI, known by their content or else by their suffix, are read in ``medical``.
+Pillow keeps palette indices and bit depth, reports truncated files and knows EXIF. It loses bits in two places, which are read
+otherwise: PNG colours of 16 bit by OpenCV, and TIFFs of types it has no mode for by tifffile.
 """
 
 from __future__ import annotations
@@ -10,29 +9,23 @@ from __future__ import annotations
 import math
 import struct
 import threading
-import zlib
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
-from PIL import Image, UnidentifiedImageError
+from PIL import Image
 
-from img2tri.errors import FileError, ImageError, Img2triError
-from img2tri.raster.io.byte_sources import Source
-from img2tri.raster.io.icons import check_icon
-from img2tri.raster.io.metadata import exif, orientation, pixel_size, upright
-from img2tri.raster.io.pages import Decoded, check_page, turned
-from img2tri.raster.io.pixel_arrays import Pixels
-from img2tri.raster.io.tiff import decode_tiff
+from img2tri.errors import FileError, ImageError
+from img2tri.raster.arrays.array_checks import Pixels
+from img2tri.raster.files.byte_sources import Source
+from img2tri.raster.files.page_checks import Decoded, check_page, turned
+from img2tri.raster.files.windows_icons import check_icon
+from img2tri.raster.metadata.exif_orientation import exif, orientation, upright
+from img2tri.raster.metadata.pixel_size import pixel_size
 
 BITS, SAMPLE_FORMAT = 258, 339  # tags of TIFF
-TIFF_STARTS = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
 DRAWINGS = ("EPS", "WMF")
-MEDICAL = {".dcm": "DICOM", ".dicom": "DICOM", ".nii": "NIfTI", ".nii.gz": "NIfTI"}
-GZIP = b"\x1f\x8b"  # NIfTI files are often compressed as a whole
-NIFTI_START = 348
-START = 1024  # bytes that tell all formats apart, also a NIfTI file that is compressed
 
 # Modes of Pillow whose arrays are the values in the file; the others become one of these.
 PLAIN_MODES = ("1", "L", "P", "RGB", "RGBA", "I", "F", "I;16", "I;16B", "I;16L", "I;16N")
@@ -42,67 +35,20 @@ _limit_lock = threading.Lock()
 _limits: list[float] = []  # Pillow's own limit, then those in force at the moment
 
 
-def decode(source: Source, page: int, max_pixels: int) -> Decoded:
-    """Decode one image of a file.
+def pillow_reads_tiff(source: Source, page: int) -> bool:
+    """Tell whether Pillow has a mode for the values of a TIFF that loses nothing.
 
-    Parameters
-    ----------
-    source
-        The file.
-    page
-        Which image, frame or slice of a file with several, from 0.
-    max_pixels
-        Refuse an image with more.
-
-    Returns
-    -------
-    values, notes, size
-        Pixels upright; see `reading.read` for the notes; (dx, dy) in millimetres or None.
-
-    Raises
-    ------
-    FileError
-        If the file is missing, a folder, not an image, damaged or truncated; if a library it needs is.
-    ImageError
-        If it has more than `max_pixels`.
-    ParameterError
-        If it has no such page.
+    Values of mode I and F come out in the wrong byte order if the file is big-endian and compressed (13.0).
     """
-    start = source.start(START)
     try:
-        kind = _medical(source, start)
-        if kind:
-            from img2tri.raster.io.dicom_nifti import decode_dicom, decode_nifti
-
-            return (decode_dicom if kind == "DICOM" else decode_nifti)(source, page, max_pixels)
-        if start[:4] in TIFF_STARTS and not _pillow_reads_tiff(source, page):
-            return decode_tiff(source, page, max_pixels)
-        return _decode(source, start, page, max_pixels)
-    except Img2triError:
-        raise
-    except MemoryError as error:
-        # Often only because of a length somewhere in a damaged file.
-        raise FileError(f"image: {str(source)!r} is damaged, or needs more memory than there is") from error
-    except UnidentifiedImageError as error:
-        raise FileError(f"image: {str(source)!r} is not an image in a known format") from error
-    except Image.DecompressionBombError as error:
-        # The file holds a larger image than its header claims.
-        raise ImageError(f"image: expected at most max_pixels={max_pixels} pixels, found more in {str(source)!r} ({error})") from error
-    except Exception as error:
-        # Decoders meet damaged data with errors of every type.
-        raise FileError(f"image: {str(source)!r} is damaged or truncated ({error})") from error
-
-
-def _medical(source: Source, start: bytes) -> str | None:
-    """Tell a DICOM and a NIfTI file by its content, or by its suffix where that says nothing."""
-    if start[128:132] == b"DICM":
-        return "DICOM"
-    if start[:2] == GZIP:
-        with suppress(zlib.error):
-            start = zlib.decompressobj(wbits=zlib.MAX_WBITS | 16).decompress(start, NIFTI_START)
-    if start[344:348] == b"n+1\0" or start[4:8] == b"n+2\0":
-        return "NIfTI"
-    return next((kind for suffix, kind in MEDICAL.items() if str(source).lower().endswith(suffix)), None)
+        with _opened(source) as img:
+            if page < int(getattr(img, "n_frames", 1)):
+                img.seek(page)
+            bits, kinds = set(img.tag_v2.get(BITS, (1,))), set(img.tag_v2.get(SAMPLE_FORMAT, (1,)))  # type: ignore[attr-defined]
+            wide = ("I;16", "I;16B", "I", "F") if img.tag_v2.prefix == b"II" else ("I;16", "I;16B")  # type: ignore[attr-defined]
+            return (max(bits) <= 8 and kinds == {1}) or (max(bits) <= 32 and img.mode in wide)
+    except (OSError, SyntaxError, ValueError, KeyError, struct.error):
+        return False
 
 
 @contextmanager
@@ -140,7 +86,8 @@ def _opened(source: Source, max_pixels: float = math.inf) -> Iterator[Image.Imag
             yield img
 
 
-def _decode(source: Source, start: bytes, page: int, max_pixels: int) -> Decoded:
+def decode_with_pillow(source: Source, start: bytes, page: int, max_pixels: int) -> Decoded:
+    """Decode one image of a file by Pillow, as `format_detection.decode` does; `start` are its first bytes."""
     check_icon(source, max_pixels)
     with _opened(source, max_pixels) as img:
         kind = str(img.format)
@@ -216,19 +163,3 @@ def _deep_png(source: Source, start: bytes) -> Pixels | None:
         whole = file.read()
     values: Pixels = np.asarray(cv2.imdecode(np.frombuffer(whole, np.uint8), cv2.IMREAD_UNCHANGED))
     return values[..., [2, 1, 0, 3][: values.shape[2]]]  # OpenCV's order is blue, green, red
-
-
-def _pillow_reads_tiff(source: Source, page: int) -> bool:
-    """Tell whether Pillow has a mode for the values of a TIFF that loses nothing.
-
-    Values of mode I and F come out in the wrong byte order if the file is big-endian and compressed (13.0).
-    """
-    try:
-        with _opened(source) as img:
-            if page < int(getattr(img, "n_frames", 1)):
-                img.seek(page)
-            bits, kinds = set(img.tag_v2.get(BITS, (1,))), set(img.tag_v2.get(SAMPLE_FORMAT, (1,)))  # type: ignore[attr-defined]
-            wide = ("I;16", "I;16B", "I", "F") if img.tag_v2.prefix == b"II" else ("I;16", "I;16B")  # type: ignore[attr-defined]
-            return (max(bits) <= 8 and kinds == {1}) or (max(bits) <= 32 and img.mode in wide)
-    except (OSError, SyntaxError, ValueError, KeyError, struct.error):
-        return False

@@ -19,6 +19,7 @@ from img2tri.errors import FileError, ImageError, Img2triError, ParameterError, 
 BYTES_PER_PIXEL = 8  # four colours of 16 bit, or one float64, not compressed
 HEADROOM = 2**20  # bytes for what is no pixel
 PART = 2**20
+GZIP = b"\x1f\x8b"  # what a compressed file begins with
 
 
 class _File(io.BufferedReader):
@@ -92,7 +93,7 @@ def is_file(image: object) -> bool:
     return isinstance(image, (str, os.PathLike, Source)) or callable(getattr(image, "read", None))
 
 
-def source(image: Any, *, max_pixels: int = 2**28) -> Source:
+def source_of(image: Any, *, max_pixels: int = 2**28) -> Source:
     r"""Return where the bytes of a file are; those of an open file are read from where it stands to its end.
 
     Parameters
@@ -113,7 +114,7 @@ def source(image: Any, *, max_pixels: int = 2**28) -> Source:
 
     Examples
     --------
-    >>> source(io.BytesIO(b"P5 1 1 255 \0"))
+    >>> source_of(io.BytesIO(b"P5 1 1 255 \0"))
     Source(name='<file>', path=None, data=b'P5 1 1 255 \x00')
     """
     if isinstance(image, Source):

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import struct
 
-from img2tri.raster.io.byte_sources import Source
-from img2tri.raster.io.pages import check_page
+from img2tri.raster.files.byte_sources import Source
+from img2tri.raster.files.page_checks import check_page
 
-START = b"\0\0\1\0"
-PNG = b"\x89PNG\r\n\x1a\n"
+ICON_START = b"\0\0\1\0"
+PNG_START = b"\x89PNG\r\n\x1a\n"
 
 
 def check_icon(source: Source, max_pixels: int) -> None:
@@ -20,12 +20,12 @@ def check_icon(source: Source, max_pixels: int) -> None:
     """
     with source.open() as file:
         head = file.read(6)
-        if head[:4] != START:
+        if head[:4] != ICON_START:
             return
         directory = file.read(16 * int.from_bytes(head[4:6], "little"))
         for entry in range(0, len(directory) - 15, 16):
             file.seek(int.from_bytes(directory[entry + 12 : entry + 16], "little"))
             start = file.read(24)
             if len(start) == 24:
-                width, height = struct.unpack(">16xII", start) if start[:8] == PNG else struct.unpack("<4xii12x", start)
+                width, height = struct.unpack(">16xII", start) if start[:8] == PNG_START else struct.unpack("<4xii12x", start)
                 check_page(source, 0, 1, abs(width), abs(height), max_pixels)

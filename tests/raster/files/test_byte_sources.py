@@ -16,8 +16,8 @@ from PIL import Image
 
 from img2tri import mesh_image
 from img2tri.errors import FileError, ImageError, ParameterError
-from img2tri.raster.io.byte_sources import Source, source
-from img2tri.raster.io.reading import read
+from img2tri.raster.files.byte_sources import Source, source_of
+from img2tri.raster.reading import read
 
 GRAY = np.arange(24 * 30, dtype=np.uint8).reshape(24, 30)
 DISC = (np.hypot(*np.mgrid[-20:20, -20:20]) < 15).astype(np.uint8) * 255
@@ -155,7 +155,7 @@ def test_max_pixels_holds_for_open_files():
     with pytest.raises(ImageError, match=r"at most max_pixels=719 pixels, found 30 x 24 in '<file>'"):
         read(io.BytesIO(png()), max_pixels=719)
     with pytest.raises(ParameterError, match="max_pixels: expected a whole number of at least 1"):
-        source(io.BytesIO(png()), max_pixels=0)
+        source_of(io.BytesIO(png()), max_pixels=0)
 
 
 class Odd:
@@ -198,7 +198,7 @@ def test_a_closed_file_is_refused(tmp_path):
 
 
 def test_a_source_is_taken_as_it_is():
-    held = source(io.BytesIO(png()))
-    assert source(held) is held
+    held = source_of(io.BytesIO(png()))
+    assert source_of(held) is held
     assert (read(held).values == read(held).values).all()
-    assert source("a.png") == Source("a.png", source("a.png").path)
+    assert source_of("a.png") == Source("a.png", source_of("a.png").path)

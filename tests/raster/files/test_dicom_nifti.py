@@ -14,10 +14,10 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from img2tri.errors import FileError, ImageError, Img2triError, ParameterError
-from img2tri.raster.io.reading import read
-from img2tri.raster.labels.gray import to_gray
+from img2tri.raster.labels.colours_to_gray import to_gray
 from img2tri.raster.labels.label_maps import label_map
-from img2tri.raster.labels.thresholds import binarize
+from img2tri.raster.labels.otsu_threshold import binarize
+from img2tri.raster.reading import read
 
 RNG = np.random.default_rng(7)
 FRAMES = RNG.integers(0, 4000, (4, 6, 9), np.uint16)

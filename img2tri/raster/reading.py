@@ -13,9 +13,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from img2tri.errors import ParameterError, finite, integer, shown
-from img2tri.raster.io.byte_sources import is_file, source
-from img2tri.raster.io.pixel_arrays import pixels
-from img2tri.raster.io.pyvista_image import from_image_data, is_image_data
+from img2tri.raster.arrays.array_checks import pixels
+from img2tri.raster.arrays.pyvista_image import from_image_data, is_image_data
+from img2tri.raster.files.byte_sources import is_file, source_of
 from img2tri.types import Frame, Picture
 
 Pair = tuple[float, float]
@@ -58,8 +58,8 @@ def read(
     Picture
         Its `notes` hold what was found in a file: "format"; "pages" where there are several, and the "page" taken;
         "orientation" (EXIF, 2 to 8) where the image had to be turned; "palette", (n, 3 or 4) uint8, where the values are
-        indices into it; "spacing", "file" or "ImageData", where it was not given in numbers. For more on DICOM and NIfTI see
-        `medical`.
+        indices into it; "spacing", "file" or "ImageData", where it was not given in numbers. For DICOM and NIfTI see `files.dicom` and
+        `files.nifti`.
 
     Raises
     ------
@@ -85,9 +85,9 @@ def read(
     corner, upward = _corner(origin)
     notes: dict[str, Any] = {}
     if is_file(image):
-        from img2tri.raster.io.image_files import decode  # Pillow is loaded for files only
+        from img2tri.raster.files.format_detection import decode  # Pillow is loaded for files only
 
-        file = source(image, max_pixels=max_pixels)
+        file = source_of(image, max_pixels=max_pixels)
         values, notes, noted = decode(file, page, max_pixels)
         name = str(file)
     else:

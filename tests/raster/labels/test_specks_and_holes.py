@@ -11,9 +11,9 @@ from oracles import pixel_topology
 from specimens import drawn, polycrystal, rings, spiral
 
 from img2tri.errors import ParameterError
-from img2tri.raster.labels.cleaning import LISTED, clean
-from img2tri.raster.labels.components import connected, find_components
+from img2tri.raster.labels.connected_components import connected, find_components
 from img2tri.raster.labels.label_maps import LabelMap
+from img2tri.raster.labels.specks_and_holes import LISTED, clean
 
 MAPS = arrays.arrays(np.int64, st.tuples(st.integers(1, 7), st.integers(1, 7)), elements=st.integers(0, 3))
 MASKS = arrays.arrays(bool, st.tuples(st.integers(1, 9), st.integers(1, 9)))

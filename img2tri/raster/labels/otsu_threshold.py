@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from img2tri.errors import ImageError, ParameterError, finite
-from img2tri.raster.io.pixel_arrays import Pixels, pixels
+from img2tri.raster.arrays.array_checks import Pixels, pixels
 from img2tri.types import Bools, Floats
 
 BINS = 65536
@@ -88,7 +88,7 @@ def binarize(gray: object, *, threshold: float | str | None = None, invert: bool
         level, mask = Level(0.5, "mask"), values
     elif number is not None:
         level, mask = Level(number, "given"), _above(values, number)
-    elif threshold is None and _two_valued(values):
+    elif threshold is None and two_valued(values):
         level, mask = _middle(values)
     else:
         value = _otsu(values, chosen=threshold is not None)
@@ -109,7 +109,8 @@ def _above(values: Pixels, level: float) -> Bools:
     return np.asarray(values > (level if values.dtype.kind == "f" else math.floor(level)))
 
 
-def _two_valued(values: Pixels) -> bool:
+def two_valued(values: Pixels) -> bool:
+    """Tell whether an image has at most two different values."""
     least, greatest = values.min(), values.max()
     return bool(((values == least) | (values == greatest)).all())
 

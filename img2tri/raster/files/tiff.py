@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from img2tri.errors import FileError, ImageError
-from img2tri.raster.io.byte_sources import Source
-from img2tri.raster.io.metadata import millimetres, orientation, upright
-from img2tri.raster.io.pages import Decoded, check_page, turned
-from img2tri.raster.io.pixel_arrays import Pixels
+from img2tri.raster.arrays.array_checks import Pixels
+from img2tri.raster.files.byte_sources import Source
+from img2tri.raster.files.page_checks import Decoded, check_page, turned
+from img2tri.raster.metadata.exif_orientation import orientation, upright
+from img2tri.raster.metadata.pixel_size import millimetres
 
 MOST_SAMPLES = 4  # red, green, blue and alpha
 ASSOCIATED = 1  # TIFF's word for colours multiplied by their alpha

@@ -12,7 +12,7 @@ import tifffile
 from PIL import Image
 
 from img2tri.errors import ImageError, ParameterError
-from img2tri.raster.io.reading import read
+from img2tri.raster.reading import read
 
 ROWS = np.arange(6).reshape(2, 3)
 
@@ -172,7 +172,7 @@ def test_bad_page():
 
 def test_arrays_need_no_heavy_library():
     code = (
-        "import sys, numpy as np; from img2tri.raster.io.reading import read; from img2tri.raster.labels.thresholds import binarize;"
+        "import sys, numpy as np; from img2tri.raster.reading import read; from img2tri.raster.labels.otsu_threshold import binarize;"
         "binarize(read(np.eye(3)).values); heavy = {'PIL', 'cv2', 'pyvista', 'tifffile'} & set(sys.modules); assert not heavy, heavy"
     )
     root = Path(sys.modules["img2tri"].__path__[0]).parent

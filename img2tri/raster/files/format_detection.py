@@ -1,0 +1,86 @@
+"""A file -> the values in it, what was noted while reading, and the size of a pixel in millimetres if the file says it.
+
+The format is told by the first bytes, or else by the suffix. Pillow decodes all common formats: it keeps palette indices and bit depth,
+reports truncated files and knows EXIF. TIFFs of types it has no mode for, DICOM and NIfTI have decoders of their own.
+"""
+
+from __future__ import annotations
+
+import zlib
+from contextlib import suppress
+
+from PIL import Image, UnidentifiedImageError
+
+from img2tri.errors import FileError, ImageError, Img2triError
+from img2tri.raster.files.byte_sources import GZIP, Source
+from img2tri.raster.files.dicom import decode_dicom
+from img2tri.raster.files.nifti import decode_nifti
+from img2tri.raster.files.page_checks import Decoded
+from img2tri.raster.files.pillow_images import decode_with_pillow, pillow_reads_tiff
+from img2tri.raster.files.tiff import decode_tiff
+
+TIFF_STARTS = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
+MEDICAL = {".dcm": "DICOM", ".dicom": "DICOM", ".nii": "NIfTI", ".nii.gz": "NIfTI"}
+NIFTI_START = 348
+FIRST_BYTES = 1024  # that tell all formats apart, also a NIfTI file that is compressed
+
+
+def decode(source: Source, page: int, max_pixels: int) -> Decoded:
+    """Decode one image of a file.
+
+    Parameters
+    ----------
+    source
+        The file.
+    page
+        Which image, frame or slice of a file with several, from 0.
+    max_pixels
+        Refuse an image with more.
+
+    Returns
+    -------
+    values, notes, size
+        Pixels upright; see `reading.read` for the notes; (dx, dy) in millimetres or None.
+
+    Raises
+    ------
+    FileError
+        If the file is missing, a folder, not an image, damaged or truncated; if a library it needs is.
+    ImageError
+        If it has more than `max_pixels`.
+    ParameterError
+        If it has no such page.
+    """
+    start = source.start(FIRST_BYTES)
+    try:
+        kind = _medical(source, start)
+        if kind:
+            return (decode_dicom if kind == "DICOM" else decode_nifti)(source, page, max_pixels)
+        if start[:4] in TIFF_STARTS and not pillow_reads_tiff(source, page):
+            return decode_tiff(source, page, max_pixels)
+        return decode_with_pillow(source, start, page, max_pixels)
+    except Img2triError:
+        raise
+    except MemoryError as error:
+        # Often only because of a length somewhere in a damaged file.
+        raise FileError(f"image: {str(source)!r} is damaged, or needs more memory than there is") from error
+    except UnidentifiedImageError as error:
+        raise FileError(f"image: {str(source)!r} is not an image in a known format") from error
+    except Image.DecompressionBombError as error:
+        # The file holds a larger image than its header claims.
+        raise ImageError(f"image: expected at most max_pixels={max_pixels} pixels, found more in {str(source)!r} ({error})") from error
+    except Exception as error:
+        # Decoders meet damaged data with errors of every type.
+        raise FileError(f"image: {str(source)!r} is damaged or truncated ({error})") from error
+
+
+def _medical(source: Source, start: bytes) -> str | None:
+    """Tell a DICOM and a NIfTI file by its content, or by its suffix where that says nothing."""
+    if start[128:132] == b"DICM":
+        return "DICOM"
+    if start[:2] == GZIP:
+        with suppress(zlib.error):
+            start = zlib.decompressobj(wbits=zlib.MAX_WBITS | 16).decompress(start, NIFTI_START)
+    if start[344:348] == b"n+1\0" or start[4:8] == b"n+2\0":
+        return "NIfTI"
+    return next((kind for suffix, kind in MEDICAL.items() if str(source).lower().endswith(suffix)), None)
