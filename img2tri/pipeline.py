@@ -12,7 +12,7 @@ from typing import Any, TypedDict, Unpack
 from img2tri.errors import ImageError, ParameterError, choice, finite, flag, integer, shown
 from img2tri.mesh import TriangleMesh
 from img2tri.paper.recipes import paper_mesh
-from img2tri.raster.arrays.image_hash import image_hash
+from img2tri.raster.in_memory.image_hash import image_hash
 from img2tri.raster.labels.cropping import crop as cropped
 from img2tri.raster.labels.label_maps import label, picked
 from img2tri.raster.labels.otsu_threshold import Level

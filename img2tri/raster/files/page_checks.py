@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from img2tri.errors import ImageError, ParameterError, shown
-from img2tri.raster.arrays.array_checks import Pixels
+from img2tri.raster.in_memory.array_checks import Pixels
 from img2tri.raster.files.byte_sources import Source
 from img2tri.raster.metadata.pixel_size import PixelSize
 

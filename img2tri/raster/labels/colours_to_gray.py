@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from img2tri.raster.arrays.array_checks import Pixels, pixels
+from img2tri.raster.in_memory.array_checks import Pixels, pixels
 
 REC_601 = (0.299, 0.587, 0.114)
 

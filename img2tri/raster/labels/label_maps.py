@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from img2tri.errors import ImageError, ParameterError, integer, shown
-from img2tri.raster.arrays.array_checks import Pixels, pixels
+from img2tri.raster.in_memory.array_checks import Pixels, pixels
 from img2tri.raster.labels.colours_to_gray import alpha_is_the_picture
 
 LISTED_LABELS = 20  # labels listed in a message

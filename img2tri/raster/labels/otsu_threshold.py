@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from img2tri.errors import ImageError, ParameterError, finite
-from img2tri.raster.arrays.array_checks import Pixels, pixels
+from img2tri.raster.in_memory.array_checks import Pixels, pixels
 from img2tri.types import Bools, Floats
 
 BINS = 65536

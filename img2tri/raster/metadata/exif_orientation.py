@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from img2tri.raster.arrays.array_checks import Pixels
+from img2tri.raster.in_memory.array_checks import Pixels
 
 if TYPE_CHECKING:
     from PIL import Image

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from img2tri.errors import ImageError
-from img2tri.raster.arrays.array_checks import Pixels, pixels
+from img2tri.raster.in_memory.array_checks import Pixels, pixels
 from img2tri.types import Frame, Picture
 
 

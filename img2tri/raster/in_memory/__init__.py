@@ -1,4 +1,4 @@
-"""Arrays of pixels, and the objects of other libraries that hold one.
+"""Images in memory: arrays of pixels, and the objects of other libraries that hold one.
 
 array_checks   what counts as an array of pixels: shape, type and values, checked at the door of every function of this stage
 image_hash     the pixels -> SHA-256, for the report

@@ -5,7 +5,7 @@ import hashlib
 import numpy as np
 import pytest
 
-from img2tri.raster.arrays.image_hash import image_hash
+from img2tri.raster.in_memory.image_hash import image_hash
 
 IMAGE = np.random.default_rng(0).integers(0, 256, (30, 40), np.uint16)
 
