@@ -13,9 +13,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from img2tri.errors import ParameterError, finite, integer, shown
+from img2tri.raster.files.byte_sources import is_file, source_of
 from img2tri.raster.in_memory.array_checks import pixels
 from img2tri.raster.in_memory.pyvista_image import from_image_data, is_image_data
-from img2tri.raster.files.byte_sources import is_file, source_of
 from img2tri.types import Frame, Picture
 
 Pair = tuple[float, float]

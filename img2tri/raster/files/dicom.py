@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 
 from img2tri.errors import FileError
-from img2tri.raster.in_memory.array_checks import Pixels
 from img2tri.raster.files.byte_sources import Source
 from img2tri.raster.files.page_checks import Decoded, check_page
+from img2tri.raster.in_memory.array_checks import Pixels
 from img2tri.raster.metadata.pixel_size import positive_size
 
 PIXEL_DATA = ("PixelData", "FloatPixelData", "DoubleFloatPixelData")

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from img2tri.errors import ImageError, ParameterError, shown
-from img2tri.raster.in_memory.array_checks import Pixels
 from img2tri.raster.files.byte_sources import Source
+from img2tri.raster.in_memory.array_checks import Pixels
 from img2tri.raster.metadata.pixel_size import PixelSize
 
 Decoded = tuple[Pixels, dict[str, Any], PixelSize | None]

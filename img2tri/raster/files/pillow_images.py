@@ -17,10 +17,10 @@ import numpy as np
 from PIL import Image
 
 from img2tri.errors import FileError, ImageError
-from img2tri.raster.in_memory.array_checks import Pixels
 from img2tri.raster.files.byte_sources import Source
 from img2tri.raster.files.page_checks import Decoded, check_page, turned
 from img2tri.raster.files.windows_icons import check_icon
+from img2tri.raster.in_memory.array_checks import Pixels
 from img2tri.raster.metadata.exif_orientation import exif, orientation, upright
 from img2tri.raster.metadata.pixel_size import pixel_size
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from img2tri.errors import FileError, ImageError
-from img2tri.raster.in_memory.array_checks import Pixels
 from img2tri.raster.files.byte_sources import Source
 from img2tri.raster.files.page_checks import Decoded, check_page, turned
+from img2tri.raster.in_memory.array_checks import Pixels
 from img2tri.raster.metadata.exif_orientation import orientation, upright
 from img2tri.raster.metadata.pixel_size import millimetres
 
