@@ -13,12 +13,12 @@ from pathlib import Path
 
 import numpy as np
 
-from img2tri.paper.boundary_points import spread_evenly
+from img2tri.paper.boundary_points import arc_length_samples
 from img2tri.paper.contours import contour_polygon, external_contours
 from img2tri.paper.delaunay import centroid_filter, delaunay
 from img2tri.paper.grid import mask_filter, structured_grid
-from img2tri.paper.poisson_disk import poisson_disk
-from img2tri.paper.recipes import CLOSENESS, structured_mesh, unstructured_mesh
+from img2tri.paper.poisson_disk import DISTANCE_PER_EDGE, poisson_disk
+from img2tri.paper.recipes import structured_mesh, unstructured_mesh
 from img2tri.raster.labels.colours_to_gray import to_gray
 from img2tri.raster.labels.otsu_threshold import binarize
 from img2tri.raster.reading import read
@@ -82,8 +82,8 @@ def walk_unstructured(mask: np.ndarray, path: Path) -> dict[str, float]:
     print("\nII-C, III-C  unstructured: the contour, points along it, points inside")
     (contour,) = external_contours(mask)
     polygon = contour_polygon(contour)
-    boundary = spread_evenly(contour, round(polygon.length / EDGE))
-    distance = CLOSENESS * EDGE
+    boundary = arc_length_samples(contour, round(polygon.length / EDGE))
+    distance = DISTANCE_PER_EDGE * EDGE
     interior = poisson_disk(polygon, boundary, min_distance=distance, min_distance_to_boundary=distance)
     print(f"  contour of {len(contour)} corners, {polygon.length:.0f} pixels long: {len(boundary)} points along it")
     print(f"  {len(interior)} points inside, more than {distance:g} pixels apart; no more fit")

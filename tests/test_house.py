@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import shutil
 import subprocess
 import sys
@@ -18,6 +19,15 @@ ROOT = PACKAGE.parent
 FILES = sorted(PACKAGE.rglob("*.py"))
 ROOMS = ("raster", "shapes", "triangles", "views")
 LONGEST = 300  # lines in a file
+MOST_MODULES = 13  # in a folder, folders in it included
+MAPS = sorted({path.parent for path in FILES})
+WITHOUT_MAP = {PACKAGE / name for name in ("", "raster", "shapes", "triangles", "views", "views/formats", "cli")}  # may only shrink
+# Names that mean two things; may only shrink.
+TWICE = {
+    *("ENOUGH", "EXACT", "FORMATS", "LARGEST", "ORDERS", "REACH", "RINGS", "ROUNDING", "SAME", "SHORTEST", "SHOWN", "SIDES", "START"),
+    *("Points", "Progress", "Sizes", "TYPES", "cross", "fitted", "keep_areas", "pixels", "places", "read_bdf", "read_inp", "read_msh"),
+    *("refine", "rings", "runs", "to_grid", "unique_edges", "vtu"),
+}
 
 # Lowest first; the modules of one row do not import each other.
 ORDER = [
@@ -149,6 +159,36 @@ def test_every_file_says_what_it_is_for_and_is_short_enough_to_read(path):
     module = tree(path)
     assert ast.get_docstring(module)
     assert len(path.read_text(encoding="utf-8").splitlines()) <= LONGEST
+
+
+def defined(path):
+    """Public classes, functions and constants of a file."""
+    for node in tree(path).body:
+        if isinstance(node, ast.ClassDef | ast.FunctionDef):
+            yield node.name
+        elif isinstance(node, ast.Assign | ast.AnnAssign):
+            targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+            yield from (leaf.id for target in targets for leaf in ast.walk(target) if isinstance(leaf, ast.Name) and leaf.id[0] != "_")
+
+
+def test_one_name_means_one_thing():
+    places = {}
+    for path in FILES:
+        for name in defined(path):
+            if not name.startswith("_"):
+                places.setdefault(name, []).append(str(path.relative_to(PACKAGE)))
+    twice = {name: found for name, found in places.items() if len(found) > 1}
+    assert not set(twice) - TWICE, twice
+
+
+@pytest.mark.parametrize("folder", MAPS, ids=lambda p: str(p.relative_to(PACKAGE.parent)))
+def test_a_folder_is_small_and_has_a_map(folder):
+    rooms = [path.stem for path in folder.iterdir() if path.suffix == ".py" or (path / "__init__.py").exists()]
+    rooms = [name for name in rooms if name not in ("__init__", "__main__")]
+    assert len(rooms) <= MOST_MODULES
+    text = ast.get_docstring(tree(folder / "__init__.py"))
+    missing = [name for name in rooms if not re.search(rf"\b{name}\b", text)]
+    assert not missing or folder in WITHOUT_MAP, missing
 
 
 def test_nothing_is_drawn_from_a_global_source_of_chance():

@@ -1,10 +1,11 @@
-"""Where in a region there may be room for points: squares of one size, split in four and sifted, again and again.
+"""The active cells of Poisson-disk sampling: squares in which there may be room for a point, split in four and sifted again and again.
 
 In: a polygon, boundary points, and the distance to keep from these. Out: the squares, ever smaller, that reach into the polygon and are
 not within reach of one boundary point altogether. Squares found to be free of both need no further look, so that the work follows
 the length of the boundary, not the area. `poisson_disk` throws its darts into these squares.
 
-Positions are complex numbers x + iy: one array instead of two.
+The method is that of Ebeida, Mitchell, Patney, Davidson and Owens (2012), "A simple algorithm for maximal Poisson-disk sampling in high
+dimensions", Computer Graphics Forum 31, https://doi.org/10.1111/j.1467-8659.2012.03059.x. Places are complex numbers x + iy.
 """
 
 from __future__ import annotations
@@ -15,20 +16,18 @@ from typing import Any
 
 import numpy as np
 import shapely
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from shapely import MultiPolygon, Polygon
 
+from img2tri.arrays import Bools, Floats, Ints, Points
 from img2tri.errors import ParameterError
-from img2tri.types import Bools, Floats, Ints
 
-Positions = NDArray[np.complex128]
-
-SLACK = 1 + 1e-9  # a square is dropped only when that cannot be due to rounding
+ROUND_OFF = 1 + 1e-9  # a square is dropped only when that cannot be due to rounding
 
 
 @dataclass(frozen=True, eq=False)
 class Squares:
-    """Squares of one size: number (column, row) of a lattice that starts at the origin of the room.
+    """Squares of one size: number (column, row) of a lattice that starts at the lower corner of the domain.
 
     `inside` says that a square lies inside the polygon altogether, `clear` that it is beyond the reach of all boundary points.
 
@@ -66,7 +65,7 @@ class Squares:
 
 
 @dataclass(frozen=True, eq=False)
-class Room:
+class Domain:
     """A polygon to be in, and boundary points to keep further away from than `distance`."""
 
     polygon: Polygon | MultiPolygon
@@ -75,7 +74,7 @@ class Room:
     distance: float
 
     @classmethod
-    def of(cls, region: Polygon | MultiPolygon | ArrayLike, boundary_points: ArrayLike, distance: float) -> Room:
+    def of(cls, region: Polygon | MultiPolygon | ArrayLike, boundary_points: ArrayLike, distance: float) -> Domain:
         """Check what is given, and make ready for many questions."""
         shape = isinstance(region, Polygon | MultiPolygon)
         polygon: Any = region if shape else Polygon(_finite_points("region", region, least=3))
@@ -86,37 +85,37 @@ class Room:
         shapely.prepare(edge)
         return cls(polygon, edge, shapely.STRtree(shapely.points(_finite_points("boundary_points", boundary_points))), distance)
 
-    def places(self, squares: Squares, within: Positions | complex) -> Positions:
+    def places(self, squares: Squares, within: Points | complex) -> Points:
         """Find places in each square: `within` runs from 0 to 1 + i, from its lower corner to the opposite one."""
         return complex(*self.polygon.bounds[:2]) + squares.size * (squares.column + 1j * squares.row + within)
 
-    def left_in(self, squares: Squares) -> Squares:
+    def with_room(self, squares: Squares) -> Squares:
         """Drop the squares without room, and find out which of the others are free altogether."""
         half = squares.size * math.sqrt(0.5)  # from the centre of a square to its corners
         centres = self.places(squares, 0.5 + 0.5j)
         room, inside, clear = np.ones(len(squares), np.bool_), squares.inside.copy(), squares.clear.copy()
         # A square that the edge does not pass through is all inside or all outside, as its centre is.
         ask = np.flatnonzero(~inside)
-        crossed = shapely.dwithin(self.edge, shapely.points(centres.real[ask], centres.imag[ask]), half * SLACK)
+        crossed = shapely.dwithin(self.edge, shapely.points(centres.real[ask], centres.imag[ask]), half * ROUND_OFF)
         whole = ask[~crossed]
         inside[whole] = room[whole] = shapely.contains_xy(self.polygon, centres.real[whole], centres.imag[whole])
         # Within reach of a boundary point altogether, in part, or not at all: the distance of the centre to the nearest one tells.
         ask = np.flatnonzero(~clear & room)
-        near = self._nearest(centres[ask], self.distance + half * SLACK)
+        near = self._nearest(centres[ask], self.distance + half * ROUND_OFF)
         clear[ask] = np.isinf(near)
-        room[ask] = near * SLACK > self.distance - half
+        room[ask] = near * ROUND_OFF > self.distance - half
         return Squares(squares.column, squares.row, inside, clear, squares.size).only(room)
 
-    def holds(self, darts: Positions, squares: Squares) -> Bools:
+    def accepts(self, darts: Points, squares: Squares) -> Bools:
         """Tell of each dart, thrown into its square, whether it is inside the polygon and far enough from all boundary points."""
         good = np.ones(len(darts), np.bool_)
         ask = np.flatnonzero(~squares.inside)
         good[ask] = shapely.contains_xy(self.polygon, darts.real[ask], darts.imag[ask])
         ask = np.flatnonzero(~squares.clear & good)
-        good[ask] = self._nearest(darts[ask], self.distance * SLACK) > self.distance
+        good[ask] = self._nearest(darts[ask], self.distance * ROUND_OFF) > self.distance
         return good
 
-    def _nearest(self, places: Positions, reach: float) -> Floats:
+    def _nearest(self, places: Points, reach: float) -> Floats:
         """Distance from each place to the nearest boundary point; infinite when there is none within `reach`."""
         distance = np.full(len(places), np.inf)
         if len(places) and len(self.boundary) and reach > 0:

@@ -11,11 +11,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from img2tri.arrays import Floats
 from img2tri.errors import ParameterError, integer
-from img2tri.types import Floats
 
 
-def spread_evenly(boundary: ArrayLike, n_points: int) -> Floats:
+def arc_length_samples(boundary: ArrayLike, n_points: int) -> Floats:
     """Spread points evenly along a closed boundary.
 
     Corners between the points are cut: the polygon through the points is inside the boundary where that is convex, the more so
@@ -44,7 +44,7 @@ def spread_evenly(boundary: ArrayLike, n_points: int) -> Floats:
 
     Examples
     --------
-    >>> spread_evenly([[0, 0], [4, 0], [4, 4], [0, 4]], 8).tolist()
+    >>> arc_length_samples([[0, 0], [4, 0], [4, 4], [0, 4]], 8).tolist()
     [[2.0, 0.0], [4.0, 0.0], [4.0, 2.0], [4.0, 4.0], [2.0, 4.0], [0.0, 4.0], [0.0, 2.0], [0.0, 0.0]]
     """
     corners = np.asarray(boundary, np.float64)

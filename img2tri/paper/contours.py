@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from shapely import MultiPolygon, Polygon, get_parts, get_type_id, make_valid
 
+from img2tri.arrays import Floats
 from img2tri.errors import ImageError, ParameterError
-from img2tri.types import Floats
 
 POLYGON = 3  # what shapely.get_type_id says of one
 

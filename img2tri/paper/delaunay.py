@@ -17,9 +17,9 @@ import pythoncdt
 from numpy.typing import ArrayLike
 from shapely import MultiPolygon, Polygon, contains_xy
 
+from img2tri.arrays import Floats, Ints
 from img2tri.errors import MeshError
 from img2tri.triangles.tools.mesh_checks import check_mesh
-from img2tri.types import Floats, Ints
 
 
 def delaunay(points: ArrayLike) -> Ints:

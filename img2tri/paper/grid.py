@@ -2,7 +2,7 @@
 
 Sections II-B and III-B of the paper, functions `generate_mesh` and `adjust_mesh` of its listing. A square grid knows nothing of
 the outline: points keep up to one step away from it, so that the mesh has steps where the shape is slanted. Better points come
-from `spread_evenly` and `poisson_disk`.
+from `arc_length_samples` and `poisson_disk`.
 
 Coordinates are the paper's: (x, y) = (column, row), whole numbers at the *centres* of pixels, y down.
 """
@@ -12,8 +12,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from img2tri.arrays import Bools, Floats
 from img2tri.errors import ImageError, ParameterError, finite, integer
-from img2tri.types import Bools, Floats
 
 MOST_POINTS = 10_000_000
 

@@ -5,8 +5,8 @@ further than `min_distance` from all kept points and further than `min_distance_
 compares each dart with every point, and never ends when the points wanted do not fit. Here
 
 - a background grid, whose cells hold one point at most, leaves 24 cells to look at, and darts are settled in batches;
-- darts are thrown only where there may be room (`room.py`): after each round, squares that have none are dropped and the others split in
-  four. When no square is left the region is full: that is proved then, not guessed from many misses.
+- darts are thrown only where there may be room (`active_cells`): after each round, squares that have none are dropped and the others
+  split in four. When no square is left the region is full: that is proved then, not guessed from many misses.
 
 The second is the idea of Ebeida, Mitchell, Patney, Davidson and Owens, "A simple algorithm for maximal Poisson-disk sampling in high
 dimensions", Computer Graphics Forum 31 (2012), https://doi.org/10.1111/j.1467-8659.2012.03059.x.
@@ -22,11 +22,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from shapely import MultiPolygon, Polygon
 
+from img2tri.arrays import Floats, Ints, Points
 from img2tri.errors import ParameterError, finite, integer
-from img2tri.paper.active_cells import SLACK, Positions, Room, Squares
-from img2tri.types import Floats, Ints
+from img2tri.paper.active_cells import ROUND_OFF, Domain, Squares
 
-LARGEST = 1e100  # distances whose squares are numbers too
+DISTANCE_PER_EDGE = 0.77  # min_distance for edges of length 1: in a full region the mean edge is 1.3 times the distance
+MOST_DISTANCE = 1e100  # distances whose squares are numbers too
 BATCHES = 4  # in which the cells get their first dart: the fewer at a time, the fewer get in each other's way
 DEPTH = 20  # how often a cell is split at most: down to a millionth of min_distance
 MOST_CELLS = 2**25  # of the grid, which then takes 0.7 GB
@@ -85,22 +86,22 @@ def poisson_disk(
     >>> len(poisson_disk(square, square, min_distance=30, min_distance_to_boundary=1, n_points=20))
     1
     """
-    room = Room.of(region, boundary_points, finite("min_distance_to_boundary", min_distance_to_boundary, least=0, most=LARGEST))
-    distance = finite("min_distance", min_distance, least=0, most=LARGEST)
+    domain = Domain.of(region, boundary_points, finite("min_distance_to_boundary", min_distance_to_boundary, least=0, most=MOST_DISTANCE))
+    distance = finite("min_distance", min_distance, least=0, most=MOST_DISTANCE)
     wanted = math.inf if n_points is None else integer("n_points", n_points)
     rng = np.random.default_rng(integer("seed", seed))
-    if wanted == 0 or room.polygon.area == 0:
+    if wanted == 0 or domain.polygon.area == 0:
         return np.zeros((0, 2))
-    grid = _Grid.over(room, max(distance, math.sqrt(room.polygon.area / wanted) / 8))
-    points = np.concatenate([np.zeros(0, np.complex128), *_rounds(room, grid, rng, wanted)])
+    grid = _Grid.over(domain, max(distance, math.sqrt(domain.polygon.area / wanted) / 8))
+    points = np.concatenate([np.zeros(0, np.complex128), *_rounds(domain, grid, rng, wanted)])
     return np.stack([points.real, points.imag], axis=1)
 
 
-def _rounds(room: Room, grid: _Grid, rng: np.random.Generator, wanted: float) -> Iterator[Positions]:
+def _rounds(domain: Domain, grid: _Grid, rng: np.random.Generator, wanted: float) -> Iterator[Points]:
     """Throw round after round, giving out the darts kept, until there are enough or there is no room left."""
     squares = Squares.one(grid.size * 2**grid.levels)
     for _ in range(grid.levels):
-        squares = room.left_in(squares.split())
+        squares = domain.with_room(squares.split())
     # The squares are the cells of the grid, and parts of these from the second round on.
     for depth in range(DEPTH + 1):
         batches = BATCHES if depth == 0 else 1
@@ -108,11 +109,11 @@ def _rounds(room: Room, grid: _Grid, rng: np.random.Generator, wanted: float) ->
         for turn in range(batches):
             # One dart into each square.
             chosen = squares.only(turns == turn)
-            darts = room.places(chosen, rng.random(len(chosen)) + 1j * rng.random(len(chosen)))
+            darts = domain.places(chosen, rng.random(len(chosen)) + 1j * rng.random(len(chosen)))
             cells = grid.cells(chosen, depth)
-            good = np.flatnonzero(room.holds(darts, chosen))
+            good = np.flatnonzero(domain.accepts(darts, chosen))
             good = rng.permutation(good[grid.uncovered(darts[good], cells[good])])
-            kept = good[grid.settled(darts[good], cells[good])]
+            kept = good[grid.independent(darts[good], cells[good])]
             kept = kept[: int(min(wanted, len(kept)))]
             grid.points[cells[kept]] = darts[kept]
             wanted -= len(kept)
@@ -121,8 +122,8 @@ def _rounds(room: Room, grid: _Grid, rng: np.random.Generator, wanted: float) ->
                 return
         # A cell that holds a point has no room. The others in four; of these, what one disc covers or is out of bounds has none.
         squares = squares.only(np.isinf(grid.points[grid.cells(squares, depth)])).split()
-        squares = squares.only(grid.uncovered(room.places(squares, 0.5 + 0.5j), grid.cells(squares, depth + 1), squares.size / 2))
-        squares = room.left_in(squares)
+        squares = squares.only(grid.uncovered(domain.places(squares, 0.5 + 0.5j), grid.cells(squares, depth + 1), squares.size / 2))
+        squares = domain.with_room(squares)
         if len(squares) == 0:
             return
 
@@ -137,7 +138,7 @@ class _Grid:
     `steps` leads from a cell to the 24 around it, nearest first. A square of ``2**levels`` cells a side covers the region.
     """
 
-    points: Positions
+    points: Points
     claims: NDArray[np.int32]
     steps: Ints
     stride: int
@@ -146,8 +147,8 @@ class _Grid:
     distance: float
 
     @classmethod
-    def over(cls, room: Room, distance: float) -> _Grid:
-        left, bottom, right, top = room.polygon.bounds
+    def over(cls, domain: Domain, distance: float) -> _Grid:
+        left, bottom, right, top = domain.polygon.bounds
         width, height = right - left, top - bottom
         least = math.sqrt(2 * width * height / MOST_CELLS)
         if distance < least:
@@ -164,9 +165,9 @@ class _Grid:
         """Name the cell that each square, split `depth` times, is part of."""
         return ((squares.row >> depth) + 2) * self.stride + (squares.column >> depth) + 2
 
-    def uncovered(self, centres: Positions, cells: Ints, half: float = 0.0) -> Ints:
+    def uncovered(self, centres: Points, cells: Ints, half: float = 0.0) -> Ints:
         """Find the squares of side 2 * half, in `cells` without points, that no disc covers altogether; for half = 0, the places."""
-        slack = SLACK if half else 1.0
+        slack = ROUND_OFF if half else 1.0
         found = [np.zeros(0, np.int64)]
         for start in range(0, len(cells), CHUNK):
             left = np.arange(start, min(start + CHUNK, len(cells)))
@@ -178,7 +179,7 @@ class _Grid:
             found.append(left)
         return np.concatenate(found)
 
-    def settled(self, darts: Positions, cells: Ints) -> Ints:
+    def independent(self, darts: Points, cells: Ints) -> Ints:
         """Find the darts of a batch that stay when they come one after another, and each drives off later ones that are too close."""
         # Only one dart in each cell is let in, the first: of several numbers written to one place the last stays.
         number = np.arange(len(darts))

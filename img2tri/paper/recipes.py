@@ -20,18 +20,18 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from shapely import MultiPolygon, get_parts
 
+from img2tri.arrays import Bools, Floats, Ints
 from img2tri.errors import ImageError, MeshError, choice, finite, integer
-from img2tri.paper.boundary_points import spread_evenly
+from img2tri.paper.boundary_points import arc_length_samples
 from img2tri.paper.contours import contour_polygon, external_contours
 from img2tri.paper.delaunay import centroid_filter, delaunay, without_unused
 from img2tri.paper.grid import MOST_POINTS, mask_filter, structured_grid
-from img2tri.paper.poisson_disk import poisson_disk
+from img2tri.paper.poisson_disk import DISTANCE_PER_EDGE, poisson_disk
 from img2tri.triangles.tools.laplacian_smoothing import uniform
 from img2tri.triangles.tools.topology import curve_vertices
-from img2tri.types import Bools, Floats, Frame, Ints, Made
+from img2tri.types import Frame, Made
 
-PAPER_STEP = 10  # px between the points of the paper's grid
-CLOSENESS = 0.77  # min_distance for edges of length 1: in a full region the mean edge is 1.3 times the distance
+GRID_STEP = 10  # px between the points of the paper's grid
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +56,7 @@ class PaperMesh:
     counted: dict[str, Any]
 
 
-def structured_mesh(mask: ArrayLike, *, step: float = PAPER_STEP, pixel: tuple[float, float] = (1.0, 1.0)) -> PaperMesh:
+def structured_mesh(mask: ArrayLike, *, step: float = GRID_STEP, pixel: tuple[float, float] = (1.0, 1.0)) -> PaperMesh:
     """Mesh a mask with a square grid, as in sections II-B and III-B of the paper.
 
     Parameters
@@ -104,7 +104,7 @@ def structured_mesh(mask: ArrayLike, *, step: float = PAPER_STEP, pixel: tuple[f
 def unstructured_mesh(
     mask: ArrayLike,
     *,
-    edge_length: float = PAPER_STEP,
+    edge_length: float = GRID_STEP,
     n_boundary_points: int | None = None,
     n_interior_points: int | None = None,
     min_distance: float | None = None,
@@ -154,8 +154,8 @@ def unstructured_mesh(
         edge_length=length,
         n_boundary=None if n_boundary_points is None else integer("n_boundary_points", n_boundary_points, least=3, most=MOST_POINTS),
         n_interior=None if n_interior_points is None else integer("n_interior_points", n_interior_points, most=MOST_POINTS),
-        min_distance=CLOSENESS * length if min_distance is None else min_distance,
-        min_distance_to_boundary=CLOSENESS * length if min_distance_to_boundary is None else min_distance_to_boundary,
+        min_distance=DISTANCE_PER_EDGE * length if min_distance is None else min_distance,
+        min_distance_to_boundary=DISTANCE_PER_EDGE * length if min_distance_to_boundary is None else min_distance_to_boundary,
     )
     first = integer("seed", seed)
     contours = external_contours(mask)
@@ -185,7 +185,7 @@ def _contour_mesh(
     if polygon.is_empty:
         return None
     perimeter = np.hypot(*(contour - np.roll(contour, 1, axis=0)).T).sum()
-    boundary = spread_evenly(contour, n_boundary or max(3, round(perimeter / edge_length)))
+    boundary = arc_length_samples(contour, n_boundary or max(3, round(perimeter / edge_length)))
     # Where the contour runs out and back along a line, two of its points may be in one place.
     boundary = boundary[np.sort(np.unique(boundary, axis=0, return_index=True)[1])]
     distances = {"min_distance": min_distance, "min_distance_to_boundary": min_distance_to_boundary}

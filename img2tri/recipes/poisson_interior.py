@@ -12,12 +12,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from img2tri.paper.poisson_disk import poisson_disk
+from img2tri.paper.poisson_disk import DISTANCE_PER_EDGE, poisson_disk
 from img2tri.shapes.polygons import polygons
 from img2tri.triangles.generate.constrained_delaunay import refine
 from img2tri.types import Bools, Floats, Ints, Outlines
 
-CLOSENESS = 0.77  # min_distance for edges of length 1, as in `img2tri.paper.recipes`
 SHORTEST = 0.03  # px: no shorter edge is split for the sake of angles
 
 
@@ -46,14 +45,14 @@ def scattered(
 
     segments, left, right = chains.segments
     least = longest if field is None else float(min(longest, field(chains.points).min(), _sampled(field, chains.points).min()))
-    near = CLOSENESS * least
+    near = DISTANCE_PER_EDGE * least
     inside = [
         poisson_disk(part, chains.points, min_distance=near, min_distance_to_boundary=near, seed=seed + i)
         for i, part in enumerate(polygons(chains)[1])
     ]
     points = np.concatenate(inside)
     if field is not None and len(points):
-        distance = CLOSENESS * np.minimum(field(points), longest)
+        distance = DISTANCE_PER_EDGE * np.minimum(field(points), longest)
         clear = cKDTree(chains.points).query(points)[0] > distance
         points, distance = points[clear], distance[clear]
         points = points[_thinned(points, distance)]

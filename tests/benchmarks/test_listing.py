@@ -16,8 +16,8 @@ from benchmarks import listing
 from benchmarks.shapes import blob
 
 from img2tri.paper.contours import contour_polygon, external_contours
-from img2tri.paper.poisson_disk import poisson_disk
-from img2tri.paper.recipes import CLOSENESS, paper_mesh, unstructured_mesh
+from img2tri.paper.poisson_disk import DISTANCE_PER_EDGE, poisson_disk
+from img2tri.paper.recipes import paper_mesh, unstructured_mesh
 from img2tri.types import Frame
 
 pytestmark = pytest.mark.benchmark
@@ -45,7 +45,7 @@ def test_the_listing_is_a_thousand_times_slower(tmp_path):
     # As many points inside as the listing still finds in good time: 85 in 100 of those that fit.
     full = unstructured_mesh(binary, edge_length=EDGE).counted
     (n_boundary,), n_interior = full["boundary_points"], round(0.85 * full["interior_points"][0])
-    distance = CLOSENESS * EDGE
+    distance = DISTANCE_PER_EDGE * EDGE
 
     rng = np.random.default_rng(0)
     [(_, triangles, _)], theirs = seconds(lambda: listing.put_together(binary, n_boundary, n_interior, distance, distance, rng))
@@ -78,7 +78,7 @@ def test_poisson_points_per_second():
     print("\npoisson_disk, until full")
     for n, edge in ((512, 8), (1024, 4), (2048, 3), (4096, 3)):
         (contour,) = external_contours(blob(n, holes=0))
-        polygon, distance = contour_polygon(contour), CLOSENESS * edge
+        polygon, distance = contour_polygon(contour), DISTANCE_PER_EDGE * edge
         options = {"min_distance": distance, "min_distance_to_boundary": distance}
         points, mine = seconds(lambda p=polygon, c=contour, o=options: poisson_disk(p, c, **o), repeats=3)
         print(f"  {len(points):8} points {mine:8.3f} s   {len(points) / mine:10.0f} points per second")

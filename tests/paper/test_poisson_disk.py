@@ -15,7 +15,7 @@ from scipy.stats import kstest
 
 from img2tri.errors import ParameterError
 from img2tri.paper import poisson_disk as poisson
-from img2tri.paper.boundary_points import spread_evenly
+from img2tri.paper.boundary_points import arc_length_samples
 from img2tri.paper.contours import contour_polygon, external_contours
 from img2tri.paper.poisson_disk import poisson_disk
 
@@ -35,7 +35,7 @@ REGIONS = {
 def coasts(region, spacing):
     """Points along all rings of a region."""
     rings = [ring for part in shapely.get_parts(region) for ring in (part.exterior, *part.interiors)]
-    return np.concatenate([spread_evenly(shapely.get_coordinates(ring), max(3, round(ring.length / spacing))) for ring in rings])
+    return np.concatenate([arc_length_samples(shapely.get_coordinates(ring), max(3, round(ring.length / spacing))) for ring in rings])
 
 
 def check_distances(points, region, boundary, distance, to_boundary):
