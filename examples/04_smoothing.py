@@ -19,8 +19,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from img2tri import TriangleMesh, mesh_image
+from img2tri.arrays import unique_edges
 from img2tri.triangles.generate.constrained_delaunay import refine
-from img2tri.triangles.tools.topology import boundary_edges, unique_edges
+from img2tri.triangles.tools.topology import boundary_edges
 
 DATA = Path(__file__).resolve().parent.parent / "data"
 

@@ -79,6 +79,42 @@ def runs(counts: Ints) -> tuple[Ints, Ints]:
     return run, np.arange(len(run)) - np.repeat(np.cumsum(counts) - counts, counts)
 
 
+def unique_edges(triangles: Ints) -> tuple[Ints, Ints]:
+    r"""Return each edge of a triangle mesh once, and which edges each triangle has.
+
+    Everywhere in img2tri the sides of a triangle are numbered by the corner they begin in, as in VTK and Gmsh::
+
+              2
+             / \             side 0 runs from corner 0 to corner 1
+      side 2/   \side 1      side 1 runs from corner 1 to corner 2
+           /     \           side 2 runs from corner 2 to corner 0
+          0-------1
+            side 0
+
+    Parameters
+    ----------
+    triangles
+        (m, 3) int64.
+
+    Returns
+    -------
+    edges : (e, 2) int64
+        Lower vertex first, sorted: the order in which values per edge are expected everywhere.
+    sides : (m, 3) int64
+        The row in `edges` of each side of each triangle.
+
+    Examples
+    --------
+    >>> edges, sides = unique_edges(np.array([[0, 1, 2], [0, 2, 3]]))
+    >>> edges.tolist(), sides.tolist()
+    ([[0, 1], [0, 2], [0, 3], [1, 2], [2, 3]], [[0, 3, 1], [1, 4, 2]])
+    """
+    start, end = triangles, np.roll(triangles, -1, axis=1)
+    n = int(triangles.max(initial=0)) + 1
+    keys, sides = np.unique(np.minimum(start, end) * n + np.maximum(start, end), return_inverse=True)
+    return np.stack(np.divmod(keys, n), axis=1), sides.reshape(triangles.shape)
+
+
 @dataclass(frozen=True, eq=False)
 class ChainIndex:
     """Points joined to chains: open ones between two nodes, and rings.

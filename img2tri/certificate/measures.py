@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from img2tri.arrays import unique_edges
 from img2tri.errors import MeshError
 from img2tri.shapes.polygons import rings
-from img2tri.triangles.tools.topology import boundary_edges, unique_edges
+from img2tri.triangles.tools.topology import boundary_edges
 from img2tri.types import Bools, Floats, Ints, Origin, Outlines
 
 STEP = 0.5  # px between the samples that distances are measured at
@@ -147,7 +148,7 @@ def topology(triangles: Ints, number: Ints, outlines: Outlines) -> dict[int, dic
     outer = np.bincount(r.regions[r.areas > 0], minlength=size)
     inner = np.bincount(r.regions[r.areas <= 0], minlength=size)
     # Euler: components - holes = vertices - edges + triangles, region by region; an edge or vertex counts for each region it has.
-    _, inverse, _ = unique_edges(triangles)
+    inverse = unique_edges(triangles)[1].ravel()
     owner = np.repeat(number, 3)
     n_vertices = np.bincount(np.unique(triangles.reshape(-1) * size + owner) % size, minlength=size)
     n_edges = np.bincount(np.unique(inverse * size + owner) % size, minlength=size)
@@ -170,7 +171,7 @@ def topology(triangles: Ints, number: Ints, outlines: Outlines) -> dict[int, dic
 def neighbours(triangles: Ints, number: Ints, outlines: Outlines) -> tuple[list[tuple[int, int]], list[tuple[int, int]]]:
     """Pairs of labels that should touch and do not, and the other way round."""
     size = len(outlines.labels)
-    _, inverse, _ = unique_edges(triangles)
+    inverse = unique_edges(triangles)[1].ravel()
     owner = np.repeat(number, 3)
     order = np.argsort(inverse, kind="stable")
     same = np.flatnonzero(np.diff(inverse[order]) == 0)
@@ -199,14 +200,15 @@ def defects(vertices: Floats, triangles: Ints, regions: Ints) -> dict[str, int]:
     a, b, c = z[triangles].T
     area = ((b - a).conj() * (c - a)).imag / 2
     flat = np.abs(area) <= 1e-12 * np.maximum(np.abs(b - a), np.abs(c - a)) ** 2
-    _, inverse, counts = unique_edges(triangles)
+    edges, sides = unique_edges(triangles)
+    inverse, counts = sides.ravel(), np.bincount(sides.ravel())
     # A region touches itself in a vertex where more than two of its own border edges meet.
     ends = boundary_edges(triangles)
     pinched = int((np.bincount(ends.reshape(-1)) > 2).sum())
     owner = np.repeat(np.unique(regions, return_inverse=True)[1], 3)
     key, copies = np.unique(inverse * (owner.max() + 1) + owner, return_counts=True)
     edge, region = np.divmod(key[copies == 1], owner.max() + 1)
-    corners = unique_edges(triangles)[0][edge].reshape(-1) * (owner.max() + 1) + np.repeat(region, 2)
+    corners = edges[edge].reshape(-1) * (owner.max() + 1) + np.repeat(region, 2)
     pinched = max(pinched, int((np.unique(corners, return_counts=True)[1] > 2).sum()))
     return {
         "inverted": int((area < 0).sum()),

@@ -18,9 +18,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from img2tri.shapes.place.padded_chains import Points, cross
-from img2tri.triangles.tools.topology import directed_edges, unique_edges
-from img2tri.types import Bools, Floats, Frame, Ints, Origin, Outlines
+from img2tri.arrays import Bools, Floats, Ints, Points, cross, unique_edges
+from img2tri.types import Frame, Origin, Outlines
 
 REACH = 1.0  # px over the tolerance: how far from a side its outline is looked for
 LEAST = 0.1  # of the Jacobian of the straight triangle: what a curved one has at least
@@ -71,15 +70,15 @@ def second_order(vertices: Floats, triangles: Ints, regions: Ints, frame: Frame,
     >>> made.triangles.tolist(), made.nodes[6].tolist()
     ([[0, 1, 2, 4, 7, 5], [0, 2, 3, 5, 8, 6]], [0.0, 1.0])
     """
-    edges, inverse, _ = unique_edges(triangles)
-    elements = np.concatenate([triangles, len(vertices) + inverse.reshape(-1, 3)[:, [2, 0, 1]]], axis=1)
+    edges, edge_of = unique_edges(triangles)
+    elements = np.concatenate([triangles, len(vertices) + edge_of], axis=1)
     middles = (vertices[edges[:, 0]] + vertices[edges[:, 1]]) / 2
     straight = np.concatenate([vertices, middles])
     if origin is None or origin.tolerance is None:
         return SecondOrder(straight, elements, regions)
     flat = (vertices - frame.corner) / frame.pixel
     z = flat[:, 0] + 1j * flat[:, 1]
-    sides = _curved_sides(vertices, triangles, regions, frame, origin.outlines, edges, inverse)
+    sides = _curved_sides(vertices, triangles, regions, frame, origin.outlines, edges, edge_of.ravel())
     curved = _bent(z, edges, elements, sides, _Curves(origin.outlines, origin.tolerance + REACH))
     nodes = frame.world(np.stack([curved.real, curved.imag], axis=1))
     # What did not move is where it was to the last bit.
@@ -109,16 +108,15 @@ class _Sides:
 
 
 def _curved_sides(
-    vertices: Floats, triangles: Ints, regions: Ints, frame: Frame, outlines: Outlines, edges: Ints, inverse: Ints
+    vertices: Floats, triangles: Ints, regions: Ints, frame: Frame, outlines: Outlines, edges: Ints, edge_of: Ints
 ) -> tuple[_Sides, Bools]:
     """Find the edges along outlines, and the vertices (n,) on the frame, which stay where they are."""
     known = outlines.labels[1:]
     at = np.minimum(np.searchsorted(known, regions), len(known) - 1)
     number = np.repeat(np.where(known[at] == regions, at + 1, -1), 3)
-    directed = directed_edges(triangles)
-    forwards = directed[:, 0] < directed[:, 1]
+    forwards = (triangles < np.roll(triangles, -1, axis=1)).ravel()
     left, right = np.zeros(len(edges), np.int64), np.zeros(len(edges), np.int64)
-    left[inverse[forwards]], right[inverse[~forwards]] = number[forwards], number[~forwards]
+    left[edge_of[forwards]], right[edge_of[~forwards]] = number[forwards], number[~forwards]
 
     x0, y0, x1, y1 = frame.bounds
     near = 1e-9 * frame.diagonal

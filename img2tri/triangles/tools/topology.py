@@ -1,16 +1,8 @@
-r"""How the triangles of a mesh hang together: its edges, its boundary, its interfaces, who is whose neighbour.
+"""How the triangles of a mesh hang together: its boundary, its interfaces, who is whose neighbour.
 
-In: triangles (m, 3) int64. Out: index arrays and a sparse matrix. Each edge is packed into one integer and sorted, so that the
-cost is that of sorting three numbers per triangle; the triangles are never searched for a vertex.
-
-The corners of a triangle are numbered 0, 1, 2 and each edge by the corner opposite to it, as in libigl::
-
-              2
-             / \             edge 0 runs from corner 1 to corner 2
-      edge 1/   \edge 0      edge 1 runs from corner 2 to corner 0
-           /     \           edge 2 runs from corner 0 to corner 1
-          0-------1
-            edge 2
+In: triangles (m, 3) int64. Out: index arrays and a sparse matrix, made from the edges of `img2tri.arrays.unique_edges`: the cost is
+that of sorting three numbers per triangle; the triangles are never searched for a vertex. Sides are numbered as there, side k from
+corner k to the next.
 """
 
 from __future__ import annotations
@@ -19,50 +11,23 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from img2tri.types import Bools, Ints
+from img2tri.arrays import Bools, Ints, unique_edges
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
 
 def directed_edges(triangles: Ints) -> Ints:
-    """Return all edges (3 m, 2) int64 in the direction of their triangles: row ``3 i + k`` is edge k of triangle i.
+    """Return all sides (3 m, 2) int64 in the direction of their triangles: row ``3 i + k`` is side k of triangle i.
 
-    With counter-clockwise triangles each edge has its triangle on its left.
+    With counter-clockwise triangles each has its triangle on its left.
 
     Examples
     --------
     >>> directed_edges(np.array([[4, 5, 6]])).tolist()
-    [[5, 6], [6, 4], [4, 5]]
+    [[4, 5], [5, 6], [6, 4]]
     """
-    return np.ascontiguousarray(triangles[:, [1, 2, 2, 0, 0, 1]]).reshape(-1, 2)
-
-
-def unique_edges(triangles: Ints) -> tuple[Ints, Ints, Ints]:
-    """Return each edge once, lower vertex first, sorted.
-
-    Parameters
-    ----------
-    triangles : (m, 3) int64
-
-    Returns
-    -------
-    edges : (e, 2) int64
-    inverse : (3 m,) int64
-        Row of `edges` for each row of `directed_edges`: ``inverse[3 i + k]`` is edge k of triangle i.
-    counts : (e,) int64
-        Number of triangles at each edge: 1 on the boundary, 2 inside, more only where the mesh is not a surface.
-
-    Examples
-    --------
-    >>> edges, inverse, counts = unique_edges(np.array([[0, 1, 2], [0, 2, 3]]))
-    >>> edges.tolist(), inverse.tolist(), counts.tolist()
-    ([[0, 1], [0, 2], [0, 3], [1, 2], [2, 3]], [3, 1, 0, 4, 2, 1], [1, 2, 1, 1, 1])
-    """
-    e = directed_edges(triangles)
-    n = int(triangles.max(initial=-1)) + 1
-    keys, inverse, counts = np.unique(e.min(axis=1) * n + e.max(axis=1), return_inverse=True, return_counts=True)
-    return np.stack(np.divmod(keys, max(n, 1)), axis=1), inverse, counts
+    return np.ascontiguousarray(triangles[:, [0, 1, 1, 2, 2, 0]]).reshape(-1, 2)
 
 
 def boundary_edges(triangles: Ints) -> Ints:
@@ -71,10 +36,11 @@ def boundary_edges(triangles: Ints) -> Ints:
     Examples
     --------
     >>> boundary_edges(np.array([[0, 1, 2], [0, 2, 3]])).tolist()
-    [[1, 2], [0, 1], [2, 3], [3, 0]]
+    [[0, 1], [1, 2], [2, 3], [3, 0]]
     """
-    _, inverse, counts = unique_edges(triangles)
-    edges: Ints = directed_edges(triangles)[counts[inverse] == 1]
+    _, sides = unique_edges(triangles)
+    side = sides.ravel()
+    edges: Ints = directed_edges(triangles)[np.bincount(side)[side] == 1]
     return edges
 
 
@@ -91,8 +57,8 @@ def interface_edges(triangles: Ints, regions: Ints) -> Ints:
     >>> interface_edges(np.array([[0, 1, 2], [0, 2, 3]]), np.array([1, 2])).tolist()
     [[0, 2]]
     """
-    edges, inverse, _ = unique_edges(triangles)
-    low, high = _span(inverse, len(edges), regions)
+    edges, sides = unique_edges(triangles)
+    low, high = _span(sides, len(edges), regions)
     interface: Ints = edges[low < high]
     return interface
 
@@ -107,10 +73,10 @@ def curve_edges(triangles: Ints, regions: Ints | None = None) -> Ints:
     >>> curve_edges(np.array([[0, 1, 2], [0, 2, 3]]), np.array([1, 2])).tolist()
     [[0, 1], [0, 2], [0, 3], [1, 2], [2, 3]]
     """
-    edges, inverse, counts = unique_edges(triangles)
-    parts = counts != 2
+    edges, sides = unique_edges(triangles)
+    parts = np.bincount(sides.ravel(), minlength=len(edges)) != 2
     if regions is not None:
-        low, high = _span(inverse, len(edges), regions)
+        low, high = _span(sides, len(edges), regions)
         parts |= low < high
     curve: Ints = edges[parts]
     return curve
@@ -124,13 +90,14 @@ def directed_curves(triangles: Ints, regions: Ints | None = None) -> Ints:
     Examples
     --------
     >>> directed_curves(np.array([[0, 1, 2], [0, 2, 3]]), np.array([2, 1])).tolist()
-    [[1, 2], [0, 1], [2, 3], [3, 0], [0, 2]]
+    [[0, 1], [1, 2], [0, 2], [2, 3], [3, 0]]
     """
-    edges, inverse, counts = unique_edges(triangles)
-    chosen = counts[inverse] != 2
+    edges, sides = unique_edges(triangles)
+    side = sides.ravel()
+    chosen = np.bincount(side)[side] != 2
     if regions is not None:
-        low, high = _span(inverse, len(edges), regions)
-        chosen |= (low < high)[inverse] & (np.repeat(regions, 3) == low[inverse])
+        low, high = _span(sides, len(edges), regions)
+        chosen |= (low < high)[side] & (np.repeat(regions, 3) == low[side])
     curves: Ints = directed_edges(triangles)[chosen]
     return curves
 
@@ -169,11 +136,11 @@ def adjacency(triangles: Ints, n: int) -> csr_array:
     return matrix
 
 
-def _span(inverse: Ints, number: int, regions: Ints) -> tuple[Ints, Ints]:
+def _span(sides: Ints, number: int, regions: Ints) -> tuple[Ints, Ints]:
     """Return the lowest and the highest region at each of `number` edges."""
     limits = np.iinfo(np.int64)
     low, high = np.full(number, limits.max), np.full(number, limits.min)
-    of_edge = np.repeat(regions, 3)
-    np.minimum.at(low, inverse, of_edge)
-    np.maximum.at(high, inverse, of_edge)
+    of_side = np.repeat(regions, 3)
+    np.minimum.at(low, sides.ravel(), of_side)
+    np.maximum.at(high, sides.ravel(), of_side)
     return low, high

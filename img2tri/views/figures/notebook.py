@@ -9,10 +9,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from img2tri.arrays import unique_edges
 from img2tri.types import Bools, Floats, Ints
 from img2tri.views.figures.colours import palette
 from img2tri.views.figures.corner_angles import corner_angles
-from img2tri.views.objects.edges import bordering, unique_edges
+from img2tri.views.objects.edges import bordering
 from img2tri.views.objects.surface import per_triangle, plane_mesh
 
 LARGEST = 3000  # triangles drawn one by one

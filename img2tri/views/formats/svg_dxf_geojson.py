@@ -26,12 +26,12 @@ from xml.sax.saxutils import escape, quoteattr
 import numpy as np
 from numpy.typing import ArrayLike
 
+from img2tri.arrays import unique_edges
 from img2tri.errors import MeshError
 from img2tri.types import Floats
 from img2tri.views.figures.colours import palette
 from img2tri.views.formats.atomic_write import known_suffix, store, writable
 from img2tri.views.objects.bodies import unique_names
-from img2tri.views.objects.edges import unique_edges
 from img2tri.views.objects.surface import plane_mesh
 
 _COLOURS = (5, 1, 3, 6, 4, 30)  # DXF numbers its colours: blue, red, green, magenta, cyan, orange

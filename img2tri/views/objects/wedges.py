@@ -22,9 +22,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from img2tri.arrays import unique_edges
 from img2tri.errors import MeshError, ParameterError, finite, integer
 from img2tri.types import Floats, Ints
-from img2tri.views.objects.edges import unique_edges
 from img2tri.views.objects.surface import Surface, per_triangle, plane_mesh, surface
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ def wedges(
     z
         Height of the bottom, in world units.
     middles
-        (e, 2) float64, for order 2: where the node in the middle of each edge lies, edges as in `img2tri.views.objects.edges.unique_edges`.
+        (e, 2) float64, for order 2: where the node in the middle of each edge lies, edges as in `img2tri.arrays.unique_edges`.
         None puts them half-way, on straight edges.
 
     Returns
@@ -112,7 +112,7 @@ def quadratic(vertices: Floats, triangles: Ints, *, middles: ArrayLike | None = 
     vertices, triangles
         (n, 2) float64 and (m, 3) int64.
     middles
-        (e, 2) float64, the nodes of the edges as `img2tri.views.objects.edges.unique_edges` orders them; None puts them half-way.
+        (e, 2) float64, the nodes of the edges as `img2tri.arrays.unique_edges` orders them; None puts them half-way.
 
     Returns
     -------
