@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from img2tri.certificate.report import Report
     from img2tri.recipes.second_order import SecondOrder
     from img2tri.triangles.tools.quality_summary import Quality
-    from img2tri.views.objects.cells import Cells
     from img2tri.views.objects.named_sets import Sets
+    from img2tri.views.objects.solver_cells import Cells
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -161,7 +161,7 @@ class TriangleMesh:
         neighbours share their walls.
         """
         if split:
-            from img2tri.views.objects.bodies import to_scene
+            from img2tri.views.objects.body_per_region import to_scene
 
             return to_scene(self.vertices, self.triangles, self.regions, height=height, names=self.names, **self._data())
         from img2tri.views.objects.to_trimesh import to_trimesh
@@ -179,7 +179,7 @@ class TriangleMesh:
         if height is not None and order == 2 and not solid:
             raise ParameterError("order: expected 1 for the surface of a solid, found 2; solid=True gives quadratic wedges")
         if solid or order != 1 or layers != 1:
-            from img2tri.views.objects.wedges import to_elements
+            from img2tri.views.objects.to_pyvista import to_elements
 
             if solid and height is None:
                 raise ParameterError("height: expected a length with solid=True, found None")
@@ -227,10 +227,10 @@ class TriangleMesh:
         """
         from img2tri.views.formats import svg_dxf_geojson as vectors
         from img2tri.views.formats.save_load import save
-        from img2tri.views.formats.solvers.solver_files import EXPORTS, export
+        from img2tri.views.formats.solvers.save_for_solvers import EXPORTS, export
 
         suffix = Path(path).suffix.lower()
-        if suffix in vectors.FORMATS:
+        if suffix in vectors.DRAWING_FORMATS:
             if height is not None:
                 raise ParameterError(f"height: expected None for {suffix}, which is a drawing, found {height!r}")
             about = {"bounds": self._bounds(), "upward": self.frame.upward, "field_data": self._data()["field_data"]}
@@ -268,7 +268,7 @@ class TriangleMesh:
 
     def _cells(self, height: float | None, layers: int, order: int) -> Cells:
         """Return the elements solvers compute on, with their named sets."""
-        from img2tri.views.objects.cells import flat_cells, solid_cells
+        from img2tri.views.objects.solver_cells import flat_cells, solid_cells
         from img2tri.views.objects.wedges import wedges
 
         if order not in (1, 2):

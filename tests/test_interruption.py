@@ -17,7 +17,7 @@ from children import PATIENCE
 from img2tri import mesh_image
 from img2tri.errors import FileError
 from img2tri.views.formats.atomic_write import store, writable
-from img2tri.views.formats.save_load import FORMATS, load
+from img2tri.views.formats.save_load import SURFACE_FORMATS, load
 
 resource = pytest.importorskip("resource")
 OLD = b"what was there before"
@@ -57,10 +57,10 @@ for path in paths:
 
 
 def test_a_full_disk_leaves_the_older_files_whole(tmp_path):
-    done = child(FULL, tmp_path, *FORMATS, stdout=subprocess.PIPE)
+    done = child(FULL, tmp_path, *SURFACE_FORMATS, stdout=subprocess.PIPE)
     out, err = done.communicate(timeout=PATIENCE)
-    assert out.decode().split("\n") == ["FileError True"] * len(FORMATS) + [""], err
-    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == {f"mesh{suffix}": OLD for suffix in FORMATS}
+    assert out.decode().split("\n") == ["FileError True"] * len(SURFACE_FORMATS) + [""], err
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == {f"mesh{suffix}": OLD for suffix in SURFACE_FORMATS}
 
 
 STOPPED = f"""

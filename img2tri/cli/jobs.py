@@ -87,13 +87,13 @@ def jobs_of(arguments: Namespace) -> list[Job]:
     from img2tri.views.formats import save_load as files
     from img2tri.views.formats import svg_dxf_geojson as vectors
     from img2tri.views.formats.atomic_write import writable
-    from img2tri.views.formats.solvers import solver_files as export
+    from img2tri.views.formats.solvers import save_for_solvers as export
 
     if arguments.height is not None:
         finite("height", arguments.height, above=0)
     if DASH in arguments.images:
         _check_stdin(arguments.images.count(DASH))
-    known = {**files.FORMATS, **export.EXPORTS, **vectors.FORMATS}
+    known = {**files.SURFACE_FORMATS, **export.EXPORTS, **vectors.DRAWING_FORMATS}
     formats = _formats(arguments, known)
     sent, wanted = _sent(arguments, formats), _wanted(arguments, known, formats)
     owners = {_same(os.path.realpath(image)): image for image in arguments.images if image != DASH}
@@ -194,10 +194,10 @@ def _suffix(name: str) -> str:
 
 def _with_companions(path: str) -> list[str]:
     """Return the name of a file, and those of the files that may be written beside it."""
-    from img2tri.views.formats.solvers.xdmf import ENDS, FACETS
+    from img2tri.views.formats.solvers.xdmf import ENDS_FILE, FACETS_FILE
 
     name, suffix = os.path.splitext(path)
-    return [name + ending + suffix for ending in (("", FACETS, ENDS) if suffix.lower() in SEVERAL_FILES else ("",))]
+    return [name + ending + suffix for ending in (("", FACETS_FILE, ENDS_FILE) if suffix.lower() in SEVERAL_FILES else ("",))]
 
 
 def _same(path: str) -> str:

@@ -22,9 +22,9 @@ from PIL import Image
 import img2tri
 from img2tri import mesh_image, pipeline
 from img2tri.cli import main, mesh_options, printing
-from img2tri.views.formats.save_load import FORMATS, load
-from img2tri.views.formats.solvers.solver_files import EXPORTS
-from img2tri.views.formats.svg_dxf_geojson import FORMATS as DRAWINGS
+from img2tri.views.formats.save_load import SURFACE_FORMATS, load
+from img2tri.views.formats.solvers.save_for_solvers import EXPORTS
+from img2tri.views.formats.svg_dxf_geojson import DRAWING_FORMATS as DRAWINGS
 
 # Each option of `img2tri mesh` that goes to mesh_image, as typed and as it must arrive.
 ARRIVE = {
@@ -169,8 +169,8 @@ def test_help_lists_the_formats(capsys):
         with pytest.raises(SystemExit):
             main([command, "--help"])
         listed.append(set(re.findall(r"(?<![\w.])\.[a-z0-9]+", capsys.readouterr().out)))
-    assert listed[0] >= {*FORMATS, *EXPORTS, *DRAWINGS}
-    assert listed[1] == {suffix for suffix, form in FORMATS.items() if form.read} | {".msh", ".bdf"}
+    assert listed[0] >= {*SURFACE_FORMATS, *EXPORTS, *DRAWINGS}
+    assert listed[1] == {suffix for suffix, form in SURFACE_FORMATS.items() if form.read} | {".msh", ".bdf"}
 
 
 def test_labels_before_the_image_does_not_swallow_it(arrived, disc):

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from views.plates import cells
 
-from img2tri.views.objects.cells import flat_cells, solid_cells
+from img2tri.views.objects.solver_cells import flat_cells, solid_cells
 from img2tri.views.objects.wedges import quadratic, wedges
 
 KINDS = ("triangle", "triangle6", "wedge", "wedge15")

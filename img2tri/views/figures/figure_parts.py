@@ -16,7 +16,7 @@ from img2tri.arrays import unique_edges
 from img2tri.errors import ParameterError
 from img2tri.types import Floats, Frame, Ints
 from img2tri.views.figures.colours import palette
-from img2tri.views.objects.edges import bordering
+from img2tri.views.objects.region_borders import bordering
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -13,8 +13,8 @@ from img2tri.arrays import unique_edges
 from img2tri.types import Bools, Floats, Ints
 from img2tri.views.figures.colours import palette
 from img2tri.views.figures.corner_angles import corner_angles
-from img2tri.views.objects.edges import bordering
-from img2tri.views.objects.surface import per_triangle, plane_mesh
+from img2tri.views.objects.flat_or_extruded import per_triangle, plane_mesh
+from img2tri.views.objects.region_borders import bordering
 
 LARGEST = 3000  # triangles drawn one by one
 _SIDE = 400  # px, the longer side of the drawing

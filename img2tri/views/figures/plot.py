@@ -19,7 +19,7 @@ from img2tri.types import Floats, Frame, Ints
 from img2tri.views.figures import figure_parts as parts
 from img2tri.views.figures.corner_angles import corner_angles
 from img2tri.views.formats.atomic_write import known_suffix, store, writable
-from img2tri.views.objects.surface import per_triangle, plane_mesh
+from img2tri.views.objects.flat_or_extruded import per_triangle, plane_mesh
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -1,13 +1,13 @@
-"""The formats of solvers, one module each: `img2tri.views.objects.cells.Cells` -> the bytes of a file.
+"""A mesh as a file, and back.
 
-    msh       Gmsh, and what reads its files
-    inp       Abaqus and CalculiX
-    bdf       Nastran
-    xdmf      FEniCSx
-    vtk       VTU and VTKHDF, for ParaView and pyvista
-    text      what those in plain text have in common
-
-They are written here because the library that knows most of them, meshio, has no surfaces, no names in Nastran, no edges beside triangles
-in MSH 4.1, and writes triangles for Abaqus as rigid ones with more digits than Abaqus reads. Every format is read back in the tests by a
-program that has nothing to do with this one.
+save_load                 save and load: the table of formats by suffix, with who writes and who reads each
+stl_ply_obj_off           writes STL, PLY, OBJ, OFF: headers, normals, groups, properties
+threemf                   writes 3MF, in colours
+glb                       writes GLB, in colours
+vtp_vtu                   writes VTP and VTU
+svg_dxf_geojson           writes the outlines as drawings
+read_stl_ply_obj_off_glb  reads the formats trimesh knows
+read_vtp_vtu              reads VTP and VTU
+atomic_write              a file is whole or it is not there
+solvers/                  MSH, INP, BDF, XDMF, VTU, VTKHDF, with named parts, written and read
 """

@@ -12,7 +12,7 @@ What each format holds::
     .vtp     float64       cell array `region`            cell arrays, field data
     .vtu     float64       cell array `region`            cell arrays, comments
 
-The formats of solvers, which hold names and sets of edges besides, are in `img2tri.views.formats.solvers.solver_files`.
+The formats of solvers, which hold names and sets of edges besides, are in `img2tri.views.formats.solvers.save_for_solvers`.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ from img2tri.errors import FileError, MeshError
 from img2tri.types import Floats, Ints
 from img2tri.views.formats import threemf
 from img2tri.views.formats.atomic_write import known_suffix, store, writable
-from img2tri.views.formats.read_surfaces import by_trimesh
-from img2tri.views.formats.read_vtk import by_xml
+from img2tri.views.formats.glb import glb
+from img2tri.views.formats.read_stl_ply_obj_off_glb import by_trimesh
+from img2tri.views.formats.read_vtp_vtu import by_xml
 from img2tri.views.formats.solvers.read_msh_bdf import READERS, by_text
 from img2tri.views.formats.stl_ply_obj_off import obj, off, ply, stl
-from img2tri.views.objects.bodies import Body, bodies
-from img2tri.views.objects.surface import Surface, places, plane_mesh, surface
-from img2tri.views.objects.to_pyvista import vtp, vtu
-from img2tri.views.objects.to_trimesh import glb
+from img2tri.views.formats.vtp_vtu import vtp, vtu_of_surface
+from img2tri.views.objects.body_per_region import Body, bodies
+from img2tri.views.objects.flat_or_extruded import Surface, coincident_points, plane_mesh, surface
 
 
 class Format(NamedTuple):
@@ -60,15 +60,15 @@ class Format(NamedTuple):
     bodies: Callable[[Sequence[Body]], bytes] | None = None
 
 
-FORMATS = {
+SURFACE_FORMATS = {
     ".stl": Format(stl, by_trimesh, single=True),
     ".ply": Format(ply, by_trimesh),
     ".obj": Format(obj, by_trimesh),
     ".off": Format(off, by_trimesh),
-    ".3mf": Format(threemf.flat, None, bodies=threemf.solids),
+    ".3mf": Format(threemf.flat_3mf, None, bodies=threemf.bodies_3mf),
     ".glb": Format(glb, by_trimesh, single=True),
     ".vtp": Format(vtp, by_xml),
-    ".vtu": Format(vtu, by_xml),
+    ".vtu": Format(vtu_of_surface, by_xml),
 }
 
 
@@ -95,7 +95,7 @@ def save(
     names
         Label -> name of the region, for formats that hold names.
     vertices, triangles, regions, z, height, cell_data, field_data
-        As in `img2tri.views.objects.surface.surface`.
+        As in `img2tri.views.objects.flat_or_extruded.surface`.
 
     Raises
     ------
@@ -103,7 +103,7 @@ def save(
         If the suffix is not known, the folder is missing or not writable, the disk is full, or the format holds float32 and the mesh
         would not survive the rounding: a triangle collapses or turns over, or two vertices become one.
     MeshError, ParameterError
-        As `img2tri.views.objects.surface.surface`.
+        As `img2tri.views.objects.flat_or_extruded.surface`.
 
     Examples
     --------
@@ -112,8 +112,8 @@ def save(
     ...
     img2tri.errors.FileError: plate.dwg: expected a name that ends in .3mf, .glb, .obj, .off, .ply, .stl, .vtp or .vtu, found '.dwg'
     """
-    target = writable(path, FORMATS)
-    form = FORMATS[known_suffix(path, FORMATS)]
+    target = writable(path, SURFACE_FORMATS)
+    form = SURFACE_FORMATS[known_suffix(path, SURFACE_FORMATS)]
     if form.bodies and height is not None:
         parts = bodies(vertices, triangles, regions, height=height, z=z, names=names, cell_data=cell_data, field_data=field_data)
         store(target, form.bodies(parts))
@@ -148,7 +148,7 @@ def load(path: str | os.PathLike[str]) -> tuple[Floats, Ints, Ints]:
     MeshError
         If it holds no triangles, other cells, or triangles in space, such as a solid.
     """
-    readers = {suffix: form.read for suffix, form in FORMATS.items() if form.read} | dict.fromkeys(READERS, by_text)
+    readers = {suffix: form.read for suffix, form in SURFACE_FORMATS.items() if form.read} | dict.fromkeys(READERS, by_text)
     suffix = known_suffix(path, readers)
     try:
         data = Path(path).read_bytes()
@@ -188,7 +188,7 @@ def _check_rounding(path: str | os.PathLike[str], made: Surface) -> None:
         rounded = made.points.astype(np.float32).astype(np.float64)
         exact, after = _normals(made.points, made.faces), _normals(rounded, made.faces)
         lost = np.sum(~((exact * after).sum(axis=1) > 0) & np.any(exact != 0, axis=1))
-    merged = places(made.points).max() - places(rounded).max()
+    merged = coincident_points(made.points).max() - coincident_points(rounded).max()
     if lost or merged:
         raise FileError(
             f"{path}: holds coordinates as float32, of 7 digits; with coordinates up to {np.abs(made.points).max():g}, {lost} of "

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from img2tri.views.objects.surface import Surface
+from img2tri.views.objects.flat_or_extruded import Surface
 
 _STL_FACE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
@@ -41,7 +41,7 @@ def ply(made: Surface) -> bytes:
     header = [
         "ply",
         "format binary_little_endian 1.0",
-        *(f"comment {note}" for note in _notes(made)),
+        *(f"comment {note}" for note in _one_line_notes(made)),
         f"element vertex {len(made.points)}",
         *(f"property double {axis}" for axis in "xyz"),
         f"element face {len(faces)}",
@@ -54,7 +54,7 @@ def ply(made: Surface) -> bytes:
 
 def obj(made: Surface) -> bytes:
     """Wavefront OBJ: all digits of the coordinates; the faces of each region in a group such as `region_3`; texts as comments."""
-    lines: list[str] = [f"# {note}" for note in _notes(made)]
+    lines: list[str] = [f"# {note}" for note in _one_line_notes(made)]
     lines += rows("v {!r} {!r} {!r}", made.points)
     for region in np.unique(made.regions):
         lines.append(f"g region_{region}")
@@ -79,7 +79,7 @@ def rows(template: str, array: NDArray[Any]) -> list[str]:
     return list(map(template.format, *array.T.tolist()))
 
 
-def _notes(made: Surface) -> list[str]:
+def _one_line_notes(made: Surface) -> list[str]:
     return [f"{name}: {text}".replace("\n", "\\n").replace("\r", "\\r") for name, text in made.field_data.items()]
 
 

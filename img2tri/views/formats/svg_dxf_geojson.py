@@ -31,10 +31,10 @@ from img2tri.errors import MeshError
 from img2tri.types import Floats
 from img2tri.views.figures.colours import palette
 from img2tri.views.formats.atomic_write import known_suffix, store, writable
-from img2tri.views.objects.bodies import unique_names
-from img2tri.views.objects.surface import plane_mesh
+from img2tri.views.objects.body_per_region import unique_names
+from img2tri.views.objects.flat_or_extruded import plane_mesh
 
-_COLOURS = (5, 1, 3, 6, 4, 30)  # DXF numbers its colours: blue, red, green, magenta, cyan, orange
+_DXF_COLOURS = (5, 1, 3, 6, 4, 30)  # DXF numbers its colours: blue, red, green, magenta, cyan, orange
 _SVG_UNITS = {"mm", "cm", "in"}
 
 
@@ -109,12 +109,12 @@ def save_outlines(
     ...
     img2tri.errors.FileError: plate.pdf: expected a name that ends in .dxf, .geojson or .svg, found '.pdf'
     """
-    target = writable(path, FORMATS)
+    target = writable(path, DRAWING_FORMATS)
     unique = unique_names(list(outlines), names or {})
     regions = [_Region(label, unique[label], _parts(label, outlines[label])) for label in sorted(outlines)]
-    lines = np.zeros((0, 2, 2)) if mesh is None else _lines(*mesh)
+    lines = np.zeros((0, 2, 2)) if mesh is None else _mesh_edges(*mesh)
     drawing = _Drawing(regions, lines, bounds or _bounds(regions, lines), upward, dict(field_data or {}))
-    store(target, FORMATS[known_suffix(path, FORMATS)](drawing).encode())
+    store(target, DRAWING_FORMATS[known_suffix(path, DRAWING_FORMATS)](drawing).encode())
 
 
 def _parts(label: int, shape: Shape) -> list[list[Floats]]:
@@ -131,7 +131,7 @@ def _wound(ring: Floats, *, outer: bool) -> Floats:
     return ring if (np.sum(x[:-1] * y[1:] - x[1:] * y[:-1]) > 0) == outer else ring[::-1]
 
 
-def _lines(vertices: ArrayLike, triangles: ArrayLike) -> Floats:
+def _mesh_edges(vertices: ArrayLike, triangles: ArrayLike) -> Floats:
     v, t = plane_mesh(vertices, triangles)
     return v[unique_edges(t)[0]]
 
@@ -156,7 +156,7 @@ _SVG = """<?xml version="1.0" encoding="UTF-8"?>
 """
 
 
-def _svg(drawing: _Drawing) -> str:
+def _svg_text(drawing: _Drawing) -> str:
     left, bottom, right, top = drawing.bounds
     # Nine digits of the larger side: finer than anything that can be drawn, and without the noise of subtracting.
     digits = 8 - int(np.floor(np.log10(max(right - left, top - bottom))))
@@ -204,7 +204,7 @@ def _dxf(drawing: _Drawing) -> str:
     pairs += [(0, "LTYPE"), (2, "CONTINUOUS"), (70, 0), (3, "Solid line"), (72, 65), (73, 0), (40, 0.0), (0, "ENDTAB")]
     pairs += [(0, "TABLE"), (2, "LAYER"), (70, len(layers) + 1)]
     for i, layer in enumerate([*layers.values(), "mesh"]):
-        colour = _COLOURS[i % len(_COLOURS)] if i < len(layers) else 8  # gray
+        colour = _DXF_COLOURS[i % len(_DXF_COLOURS)] if i < len(layers) else 8  # gray
         pairs += [(0, "LAYER"), (2, layer), (70, 0), (62, colour), (6, "CONTINUOUS")]
     pairs += [(0, "ENDTAB"), (0, "ENDSEC"), (0, "SECTION"), (2, "ENTITIES")]
     for region in drawing.regions:
@@ -253,4 +253,4 @@ def _multipolygon(parts: list[list[Floats]]) -> dict[str, Any]:
     return {"type": "MultiPolygon", "coordinates": coordinates}
 
 
-FORMATS: dict[str, Callable[[_Drawing], str]] = {".dxf": _dxf, ".geojson": _geojson, ".svg": _svg}
+DRAWING_FORMATS: dict[str, Callable[[_Drawing], str]] = {".dxf": _dxf, ".geojson": _geojson, ".svg": _svg_text}

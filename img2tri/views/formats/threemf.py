@@ -22,12 +22,12 @@ from numpy.typing import NDArray
 from img2tri.types import Floats
 from img2tri.views.figures.colours import palette
 from img2tri.views.formats.stl_ply_obj_off import rows
-from img2tri.views.objects.bodies import Body
-from img2tri.views.objects.surface import Surface
+from img2tri.views.objects.body_per_region import Body
+from img2tri.views.objects.flat_or_extruded import Surface
 
-_UNITS = {"um": "micron", "mm": "millimeter", "cm": "centimeter", "m": "meter", "in": "inch", "ft": "foot"}
+_UNITS_OF_3MF = {"um": "micron", "mm": "millimeter", "cm": "centimeter", "m": "meter", "in": "inch", "ft": "foot"}
 
-_TYPES = """<?xml version="1.0" encoding="UTF-8"?>
+_CONTENT_TYPES = """<?xml version="1.0" encoding="UTF-8"?>
 <Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">
 <Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>
 <Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/>
@@ -58,12 +58,12 @@ _OBJECT = """<object id="{number}" type="{kind}" name={name} pid="{group}" pinde
 </triangles></mesh></object>"""
 
 
-def solids(made: Sequence[Body]) -> bytes:
+def bodies_3mf(made: Sequence[Body]) -> bytes:
     """Return the bytes of a 3MF file of closed bodies: one object for each, with its name and colour; all digits of the coordinates.
 
     Texts are metadata. The unit is the millimetre, unless ``field_data["units"]`` is "um", "cm", "m", "in" or "ft".
     """
-    groups = [_group(i, [body.colour]) for i, body in enumerate(made, 1)]
+    groups = [_colour_group(i, [body.colour]) for i, body in enumerate(made, 1)]
     objects = [
         _object(len(made) + i, i, "model", body.name, body.surface.points, '<triangle v1="{}" v2="{}" v3="{}"/>', body.surface.faces)
         for i, body in enumerate(made, 1)
@@ -71,15 +71,15 @@ def solids(made: Sequence[Body]) -> bytes:
     return _package([*groups, *objects], len(made), made[0].surface.field_data, [body.label for body in made])
 
 
-def flat(made: Surface) -> bytes:
+def flat_3mf(made: Surface) -> bytes:
     """Return the bytes of a 3MF file of a flat mesh: one object of type "surface", which may be open, with a colour for each triangle."""
     labels, colour = np.unique(made.regions, return_inverse=True)
     triangle = '<triangle v1="{}" v2="{}" v3="{}" pid="1" p1="{}"/>'
     whole = _object(2, 1, "surface", "mesh", made.points, triangle, np.column_stack([made.faces, colour]))
-    return _package([_group(1, palette(len(labels)).tolist()), whole], 1, made.field_data, labels.tolist())
+    return _package([_colour_group(1, palette(len(labels)).tolist()), whole], 1, made.field_data, labels.tolist())
 
 
-def _group(number: int, colours: Iterable[Sequence[int]]) -> str:
+def _colour_group(number: int, colours: Iterable[Sequence[int]]) -> str:
     inside = "".join(f'<m:color color="#{red:02X}{green:02X}{blue:02X}"/>' for red, green, blue in colours)
     return f'<m:colorgroup id="{number}">{inside}</m:colorgroup>'
 
@@ -97,19 +97,19 @@ def _package(resources: list[str], objects: int, texts: Mapping[str, str], label
     notes = {"regions": " ".join(map(str, labels)), **texts}
     last = len(resources)
     model = _MODEL.format(
-        unit=_UNITS.get(texts.get("units", "mm"), "millimeter"),
-        notes="\n".join(f'<metadata name="img2tri:{_name(name)}">{escape(text)}</metadata>' for name, text in notes.items()),
+        unit=_UNITS_OF_3MF.get(texts.get("units", "mm"), "millimeter"),
+        notes="\n".join(f'<metadata name="img2tri:{_xml_name(name)}">{escape(text)}</metadata>' for name, text in notes.items()),
         resources="\n".join(resources),
         items="".join(f'<item objectid="{number}"/>' for number in range(last - objects + 1, last + 1)),
     )
     package = io.BytesIO()
     with zipfile.ZipFile(package, "w") as archive:
-        for name, text in {"[Content_Types].xml": _TYPES, "_rels/.rels": _RELATIONS, "3D/3dmodel.model": model}.items():
+        for name, text in {"[Content_Types].xml": _CONTENT_TYPES, "_rels/.rels": _RELATIONS, "3D/3dmodel.model": model}.items():
             # A ZipInfo made from the name alone is dated 1980, whatever the clock says.
             archive.writestr(zipfile.ZipInfo(name), text, zipfile.ZIP_DEFLATED)
     return package.getvalue()
 
 
-def _name(text: str) -> str:
+def _xml_name(text: str) -> str:
     """Make an XML name of any text: what cannot stand in one becomes an underscore."""
     return "".join(letter if letter.isalnum() or letter in "-." else "_" for letter in text)

@@ -1,13 +1,18 @@
-"""A mesh as objects of other libraries, and the geometry they share.
+"""A mesh as objects of other libraries, and the geometry these share.
 
-bodies      Several regions as several closed bodies: a plane mesh and a height -> one solid per region, for printing in several mat
-cells       What every format for solvers starts from: a mesh in space made of cells of one kind, with its named parts.
-edges       The edges of a triangle mesh: triangles -> each edge once, which edges each triangle has, and which of them can be seen
-extrusion   A plane mesh with a thickness: triangles -> the closed surface of the solid between two heights.
-named_sets  The named parts of a mesh: triangles with their regions, and the frame of the image -> what each edge is called.
-surface     What every view starts from: a plane mesh -> triangles in space, with a value of each kind for each of them.
-to_pyvista  For pyvista users: a plane mesh -> `pyvista.PolyData` or `UnstructuredGrid`, and the bytes of VTP and VTU files.
-to_skfem    For scikit-fem users: a plane mesh -> `skfem.MeshTri` with its parts by name.
-to_trimesh  For trimesh users: a plane mesh -> a `trimesh.Trimesh`, flat or closed, and the bytes of a GLB file.
-wedges      Solids for solvers: a plane mesh -> wedges, in layers, linear or quadratic; or the flat mesh with quadratic triangles.
+What all views start from:
+
+    flat_or_extruded  checks the arrays; the triangles in space: flat at a height z, or the closed surface of a solid
+    extrusion         triangles and a height -> the closed surface: bottom, top and walls
+    body_per_region   one closed body for each region, for printing in several materials; a trimesh.Scene of them
+    wedges            triangles and a height -> wedges in layers; quadratic elements: nodes in the middle of edges
+    named_sets        names of regions, and of edges: left, outer, hole_1, bone__cartilage
+    solver_cells      cells of one kind with all their named parts: what every format for solvers starts from
+    region_borders    which edges bound the mesh or part two regions
+
+Objects of libraries:
+
+    to_trimesh        trimesh.Trimesh
+    to_pyvista        pyvista.PolyData and UnstructuredGrid
+    to_skfem          skfem.MeshTri
 """

@@ -11,10 +11,9 @@ first of these that fits:
 So no edge is in two sets, as solvers want it that give each facet one tag. The tags are the same in every format, whichever sets there are:
 left 1, right 2, bottom 3, top 4, outer 5, the holes from 6, then the interfaces by their labels.
 
-An edge is a side of a triangle. Sides are numbered by the corner they begin in, as in `img2tri.views.objects.edges`, and side 3 t + k is
-side k of
-triangle t. Its twin is the same edge seen from the other triangle; a boundary ring is followed by going round its vertices from twin to
-twin, so that where a mesh touches itself in one vertex only, its parts stay apart, as they are for the pixels.
+An edge is a side of a triangle. Sides are numbered by the corner they begin in, as in `img2tri.arrays.unique_edges`, and side 3 t + k is
+side k of triangle t. Its twin is the same edge seen from the other triangle; a boundary ring is followed by going round its vertices from
+twin to twin, so that where a mesh touches itself in one vertex only, its parts stay apart, as they are for the pixels.
 """
 
 from __future__ import annotations
@@ -26,11 +25,11 @@ import numpy as np
 
 from img2tri.errors import MeshError, ParameterError
 from img2tri.types import Bools, Floats, Ints
-from img2tri.views.objects.bodies import unique_names
+from img2tri.views.objects.body_per_region import unique_names
 
 FRAME = ("left", "right", "bottom", "top")
 OUTER = "outer"
-_FLAT = 1e-9  # how far from the frame, relative to the mesh and its place, a vertex still lies on it
+_ON_FRAME = 1e-9  # how far from the frame, relative to the mesh and its place, a vertex still lies on it
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,7 +118,7 @@ def named_sets(
     for i, on in enumerate(_on_frame(vertices, start[free], end[free], bounds)):
         kind[on] = i
         found[FRAME[i]] = free[kind == i]
-    _, ring, area = rings(vertices, triangles, twins)
+    _, ring, area = boundary_rings(vertices, triangles, twins)
     found[OUTER] = free[(kind < 0) & (area[ring] >= 0)]
     holes = np.flatnonzero(area < 0)
     # The area of a hole is negative, so that of the largest one comes first.
@@ -158,7 +157,7 @@ def region_names(regions: Ints, names: Mapping[int, str] | None = None) -> dict[
     return unique_names(np.unique(regions).tolist(), names or {})
 
 
-def rings(vertices: Floats, triangles: Ints, twins: Ints | None = None) -> tuple[Ints, Ints, Floats]:
+def boundary_rings(vertices: Floats, triangles: Ints, twins: Ints | None = None) -> tuple[Ints, Ints, Floats]:
     """Follow the boundary of a mesh.
 
     Returns
@@ -172,7 +171,7 @@ def rings(vertices: Floats, triangles: Ints, twins: Ints | None = None) -> tuple
 
     Examples
     --------
-    >>> rings(np.array([[0, 0], [2, 0], [0, 2.0]]), np.array([[0, 1, 2]]))
+    >>> boundary_rings(np.array([[0, 0], [2, 0], [0, 2.0]]), np.array([[0, 1, 2]]))
     (array([0, 1, 2]), array([0, 0, 0]), array([2.]))
     """
     twins = _twins(triangles, len(vertices)) if twins is None else twins
@@ -220,6 +219,6 @@ def _on_frame(vertices: Floats, start: Ints, end: Ints, bounds: tuple[float, flo
     if bounds is None:
         return []
     left, bottom, right, top = bounds
-    within = _FLAT * max(np.abs(bounds).max(), right - left, top - bottom)
+    within = _ON_FRAME * max(np.abs(bounds).max(), right - left, top - bottom)
     places = ((0, left), (0, right), (1, bottom), (1, top))
     return [np.all(np.abs(vertices[:, axis][np.stack([start, end])] - value) <= within, axis=0) for axis, value in places]

@@ -1,4 +1,4 @@
-"""For trimesh users: a plane mesh -> a `trimesh.Trimesh`, flat or closed, and the bytes of a GLB file.
+"""For trimesh users: a plane mesh -> a `trimesh.Trimesh`, flat or closed.
 
 trimesh accepts plane vertices, but its exporters do not; so vertices always have three coordinates.
 """
@@ -6,13 +6,12 @@ trimesh accepts plane vertices, but its exporters do not; so vertices always hav
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from img2tri.views.figures.colours import palette
-from img2tri.views.objects.surface import Surface, surface
+from img2tri.views.objects.flat_or_extruded import surface
 
 if TYPE_CHECKING:
     import trimesh
@@ -30,9 +29,8 @@ def to_trimesh(
 ) -> trimesh.Trimesh:
     """Make a `trimesh.Trimesh` of a plane mesh; nothing is merged, dropped or reordered.
 
-    Parameters and errors are those of `img2tri.views.objects.surface.surface`. With `height`, the object is the closed surface of the
-    solid:
-    watertight, with volume = area x height.
+    Parameters and errors are those of `img2tri.views.objects.flat_or_extruded.surface`. With `height`, the object is the closed surface
+    of the solid: watertight, with volume = area x height.
 
     Returns
     -------
@@ -56,24 +54,3 @@ def to_trimesh(
         metadata={**made.field_data, "regions": np.unique(made.regions).tolist()},
         process=False,
     )
-
-
-def glb(made: Surface) -> bytes:
-    """Return the bytes of a GLB file: a mesh in its colour for each region, such as `region_3`; texts as extras of the scene.
-
-    glTF holds coordinates as float32 and knows no unit but the metre; they are written as they are.
-    """
-    import trimesh
-
-    visual: Any = trimesh.visual
-    labels = np.unique(made.regions)
-    scene: Any = trimesh.Scene(metadata={**made.field_data, "regions": labels.tolist()})
-    for label, colour in zip(labels.tolist(), palette(len(labels)).tolist(), strict=True):
-        material = visual.material.PBRMaterial(
-            name=f"region_{label}", baseColorFactor=[*colour, 255], metallicFactor=0.0, roughnessFactor=0.8, doubleSided=not made.closed
-        )
-        part = trimesh.Trimesh(made.points, made.faces[made.regions == label], metadata={"region": label}, process=False)
-        part.remove_unreferenced_vertices()
-        part.visual = visual.TextureVisuals(material=material)
-        scene.add_geometry(part, node_name=f"region_{label}", geom_name=f"region_{label}")
-    return bytes(scene.export(file_type="glb"))

@@ -16,8 +16,7 @@ C3D15) and Gmsh agree on for corners; the nodes in the middle of edges in the or
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,10 +24,7 @@ from numpy.typing import ArrayLike, NDArray
 from img2tri.arrays import unique_edges
 from img2tri.errors import MeshError, ParameterError, finite, integer
 from img2tri.types import Floats, Ints
-from img2tri.views.objects.surface import Surface, per_triangle, plane_mesh, surface
-
-if TYPE_CHECKING:
-    import pyvista
+from img2tri.views.objects.flat_or_extruded import per_triangle, plane_mesh
 
 
 def wedges(
@@ -91,15 +87,15 @@ def wedges(
     v, t = plane_mesh(vertices, triangles)
     labels = np.ones(len(t), np.int64) if regions is None else per_triangle("regions", regions, len(t))
     height, z, layers = finite("height", height, above=0), finite("z", z), integer("layers", layers, least=1)
-    nodes, flat = (v, t) if _order(order, middles) == 1 else quadratic(v, t, middles=middles)
+    nodes, flat = (v, t) if checked_order(order, middles) == 1 else quadratic(v, t, middles=middles)
     n, levels = len(nodes), z + height * np.linspace(0, 1, layers + 1)
-    points = _stack(nodes, levels)
+    points = stacked(nodes, levels)
     # Layer k stands on level k: the same nodes, k n further on.
     bottom = (flat + n * np.arange(layers)[:, None, None]).reshape(-1, flat.shape[1])
     cells = np.concatenate([bottom[:, :3], bottom[:, :3] + n], axis=1)
     if order == 2:
         half_way = (t + len(points) + len(v) * np.arange(layers)[:, None, None]).reshape(-1, 3)
-        points = np.concatenate([points, _stack(v, (levels[1:] + levels[:-1]) / 2)])
+        points = np.concatenate([points, stacked(v, (levels[1:] + levels[:-1]) / 2)])
         cells = np.concatenate([cells, bottom[:, 3:], bottom[:, 3:] + n, half_way], axis=1)
     return points, cells, np.tile(labels.astype(np.int64), layers)
 
@@ -139,66 +135,7 @@ def quadratic(vertices: Floats, triangles: Ints, *, middles: ArrayLike | None = 
     return np.concatenate([vertices, between]), np.concatenate([triangles, sides + len(vertices)], axis=1)
 
 
-def to_elements(
-    vertices: ArrayLike,
-    triangles: ArrayLike,
-    regions: ArrayLike | None = None,
-    *,
-    height: float | None = None,
-    layers: int = 1,
-    order: int = 1,
-    z: float = 0.0,
-    middles: ArrayLike | None = None,
-    cell_data: Mapping[str, ArrayLike] | None = None,
-    field_data: Mapping[str, str] | None = None,
-) -> pyvista.UnstructuredGrid:
-    """Make a `pyvista.UnstructuredGrid` for solvers: triangles, or with `height` wedges, linear or quadratic.
-
-    Parameters and errors are those of `wedges` and `img2tri.views.objects.surface.surface`; without `height` the mesh stays flat, at `z`,
-    and
-    `layers` has to be 1.
-
-    Returns
-    -------
-    pyvista.UnstructuredGrid
-        Of TRIANGLE or QUADRATIC_TRIANGLE, WEDGE or QUADRATIC_WEDGE cells with float64 points; with the cell array "region" (int32, active)
-        and those of `cell_data`, each wedge with the values of its triangle, and `field_data` as texts.
-
-    Examples
-    --------
-    >>> solid = to_elements([[0, 0], [2, 0], [0, 2]], [[0, 1, 2]], height=3, layers=2, order=2)
-    >>> solid.n_cells, solid.celltypes.tolist(), round(solid.volume, 9)
-    (2, [26, 26], 6.0)
-    """
-    import pyvista
-
-    flat = surface(vertices, triangles, regions, z=z, cell_data=cell_data, field_data=field_data)
-    v = flat.points[:, :2]
-    kind: Any
-    if height is not None:
-        points, cells, _ = wedges(v, flat.faces, height=height, layers=layers, order=order, z=z, middles=middles)
-        kind = pyvista.CellType.WEDGE if order == 1 else pyvista.CellType.QUADRATIC_WEDGE
-    elif integer("layers", layers, least=1) > 1:
-        raise ParameterError(f"layers: expected 1 for a flat mesh, found {layers}; give a height too")
-    elif _order(order, middles) == 1:
-        points, cells, kind = flat.points, flat.faces, pyvista.CellType.TRIANGLE
-    else:
-        nodes, cells = quadratic(v, flat.faces, middles=middles)
-        points, kind = _stack(nodes, np.array([z])), pyvista.CellType.QUADRATIC_TRIANGLE
-    return _with_data(pyvista.UnstructuredGrid({kind: cells}, points), flat, layers)
-
-
-def _with_data(grid: pyvista.UnstructuredGrid, flat: Surface, layers: int) -> pyvista.UnstructuredGrid:
-    """Give each wedge, or triangle, the values of the triangle it stands on."""
-    for name, values in {**flat.cell_data, "region": flat.regions}.items():
-        grid.cell_data[name] = np.tile(values, layers)
-    for name, text in flat.field_data.items():
-        grid.field_data[name] = [text]
-    grid.set_active_scalars("region", preference="cell")
-    return grid
-
-
-def _order(order: int, middles: ArrayLike | None) -> int:
+def checked_order(order: int, middles: ArrayLike | None) -> int:
     """Return `order` if it is 1 or 2, and 2 where there are middles."""
     if order not in (1, 2) or isinstance(order, bool):
         raise ParameterError(f"order: expected 1 or 2, found {order!r}")
@@ -207,6 +144,6 @@ def _order(order: int, middles: ArrayLike | None) -> int:
     return order
 
 
-def _stack(nodes: Floats, levels: NDArray[Any]) -> Floats:
+def stacked(nodes: Floats, levels: NDArray[Any]) -> Floats:
     """Return the nodes (k, 2) at each of the levels (l,), as (l k, 3), level by level."""
     return np.column_stack([np.tile(nodes, (len(levels), 1)), np.repeat(levels, len(nodes))])

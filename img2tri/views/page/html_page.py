@@ -22,9 +22,9 @@ from img2tri.arrays import unique_edges
 from img2tri.errors import MeshError
 from img2tri.types import Floats, Frame, Ints
 from img2tri.views.figures.colours import palette
-from img2tri.views.objects.bodies import unique_names
-from img2tri.views.objects.edges import bordering
-from img2tri.views.objects.surface import per_triangle, plane_mesh
+from img2tri.views.objects.body_per_region import unique_names
+from img2tri.views.objects.flat_or_extruded import per_triangle, plane_mesh
+from img2tri.views.objects.region_borders import bordering
 from img2tri.views.page import html_tables as tables
 from img2tri.views.page.histogram_svg import RAMP, chart
 from img2tri.views.page.image_png import png

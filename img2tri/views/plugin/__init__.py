@@ -1,6 +1,6 @@
-"""What pyvista finds by entry points.
+"""What pyvista finds by its entry points, with no import of img2tri.
 
-accessor         What pyvista users find on their own objects, by entry point and with no import of img2tri.
-datasets         Objects of pyvista -> `img2tri.views.objects.cells.Cells`, so that whatever is in hand there can be written for sol
-readers_writers  What pyvista finds by entry points: readers and writers of the formats it lacks, for `pyvista.read`, ``.save`` and
+accessor          ``.img2tri`` on pyvista's own objects: mesh an image, measure and smooth a mesh
+readers_writers   pyvista.read and ``.save`` for .msh, .inp, .bdf and .xdmf
+dataset_to_cells  whatever object of pyvista is in hand -> `img2tri.views.objects.solver_cells.Cells`
 """

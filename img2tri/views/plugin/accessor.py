@@ -18,7 +18,7 @@ import numpy as np
 
 from img2tri.errors import MeshError, ParameterError
 from img2tri.types import Frame
-from img2tri.views.plugin.datasets import from_dataset, image_frame, written_about
+from img2tri.views.plugin.dataset_to_cells import from_dataset, image_frame, written_about
 
 if TYPE_CHECKING:
     import pyvista

@@ -2,15 +2,14 @@
 
 Readers: .msh and .bdf. They return an UnstructuredGrid with the cell array ``region`` and with the named sets as field data, as
 `img2tri.views.formats.solvers.vtu_vtkhdf` has them. pyvista reads these files through meshio where that is installed; so what was not
-written by
-img2tri is still left to meshio then, and read here only where there is none.
+written by img2tri is still left to meshio then, and read here only where there is none.
 
 Two readers more stand before pyvista's own, in the group of entry points it has for that: of .inp, which it takes for AVS UCD, so that
 a file of Abaqus comes out empty; and of .xdmf, which it reads only with a time in it. All other files of these suffixes are left to it, and
 so is, by pyvista, a call with arguments for its reader, such as ``progress_bar``.
 
 Writers: .msh, .inp, .bdf and .xdmf, of a PolyData of triangles in a plane, or an UnstructuredGrid of triangles or wedges, see
-`img2tri.views.plugin.datasets`.
+`img2tri.views.plugin.dataset_to_cells`.
 """
 
 from __future__ import annotations
@@ -25,11 +24,11 @@ from xml.sax.saxutils import unescape
 from img2tri.errors import FileError, MeshError
 from img2tri.views.formats.solvers import read_inp as reading_inp
 from img2tri.views.formats.solvers import read_msh_bdf as reading
-from img2tri.views.formats.solvers.solver_files import export
-from img2tri.views.formats.solvers.text import MARK
-from img2tri.views.formats.solvers.vtu_vtkhdf import grid_of, plain
-from img2tri.views.formats.solvers.xdmf import ENDS, FACETS
-from img2tri.views.plugin.datasets import from_dataset
+from img2tri.views.formats.solvers.plain_text import MARK
+from img2tri.views.formats.solvers.save_for_solvers import export
+from img2tri.views.formats.solvers.vtu_vtkhdf import array_name, grid_of
+from img2tri.views.formats.solvers.xdmf import ENDS_FILE, FACETS_FILE
+from img2tri.views.plugin.dataset_to_cells import from_dataset
 
 if TYPE_CHECKING:
     import pyvista
@@ -43,7 +42,7 @@ def read_msh(path: str) -> pyvista.DataObject:
     FileError
         If it cannot be read, neither here nor by meshio.
     """
-    return _read(path, reading.read_msh)
+    return _read_found(path, reading.parse_msh)
 
 
 def read_bdf(path: str) -> pyvista.DataObject:
@@ -54,7 +53,7 @@ def read_bdf(path: str) -> pyvista.DataObject:
     FileError
         If it cannot be read, neither here nor by meshio.
     """
-    return _read(path, reading.read_bdf)
+    return _read_found(path, reading.parse_bdf)
 
 
 def read_inp(path: str) -> pyvista.DataObject:
@@ -68,7 +67,7 @@ def read_inp(path: str) -> pyvista.DataObject:
     import pyvista
 
     if reading_inp.is_abaqus(_local(path).read_bytes()):
-        return _read(path, reading_inp.read_inp)
+        return _read_found(path, reading_inp.parse_inp)
     reader: Any = pyvista.AVSucdReader(path)
     grid: pyvista.DataObject = reader.read()
     return grid
@@ -79,17 +78,17 @@ def read_xdmf(path: str) -> Any:
     import pyvista
 
     file = _local(path)
-    grid = _xdmf_grid(file)
+    grid = _read_xdmf_grid(file)
     if isinstance(grid, pyvista.UnstructuredGrid) and "region" in grid.cell_data:
         for name, number in _xdmf_names(file).items():
             label = re.fullmatch(r"region_(-?\d+)", name)  # labels below 1 are written as other numbers
             grid["region"][grid["region"] == number] = int(label[1]) if label else number
-            grid.field_data[plain(name)] = [int(label[1]) if label else number]
-        for beside in (file.with_stem(file.stem + ending) for ending in (FACETS, ENDS)):
-            if beside.exists() and (facets := _xdmf_grid(beside)).n_points == grid.n_points:
+            grid.field_data[array_name(name)] = [int(label[1]) if label else number]
+        for beside in (file.with_stem(file.stem + ending) for ending in (FACETS_FILE, ENDS_FILE)):
+            if beside.exists() and (facets := _read_xdmf_grid(beside)).n_points == grid.n_points:
                 nodes = facets.cell_connectivity.reshape(facets.n_cells, -1)
                 for name, number in _xdmf_names(beside).items():
-                    grid.field_data[plain(name)] = nodes[facets["boundary"] == number]
+                    grid.field_data[array_name(name)] = nodes[facets["boundary"] == number]
     return grid
 
 
@@ -122,7 +121,7 @@ def _local(path: str) -> Path:
     return Path(path)
 
 
-def _read(path: str, reader: Callable[[bytes], reading.Found]) -> pyvista.DataObject:
+def _read_found(path: str, reader: Callable[[bytes], reading.Found]) -> pyvista.DataObject:
     import pyvista
 
     data = _local(path).read_bytes()
@@ -138,7 +137,7 @@ def _read(path: str, reader: Callable[[bytes], reading.Found]) -> pyvista.DataOb
     return grid_of(found.points, found.cells, found.kind, found.regions, found.names, found.facets)
 
 
-def _xdmf_grid(path: Path) -> Any:
+def _read_xdmf_grid(path: Path) -> Any:
     """Read what VTK reads of a file; pyvista's reader wants a time."""
     import pyvista
     from vtkmodules.vtkIOXdmf2 import vtkXdmfReader

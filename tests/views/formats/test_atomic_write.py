@@ -12,7 +12,7 @@ from img2tri.errors import FileError, MeshError
 from img2tri.views.formats import atomic_write as storing
 from img2tri.views.formats import save_load as files
 from img2tri.views.formats.atomic_write import store, writable
-from img2tri.views.formats.save_load import FORMATS, Format, save
+from img2tri.views.formats.save_load import SURFACE_FORMATS, Format, save
 
 OLD = b"the old file, whole"
 
@@ -39,7 +39,7 @@ def test_a_writer_that_fails_leaves_the_old_file(old, monkeypatch):
     def fail(_made):
         raise RuntimeError("half-way")
 
-    monkeypatch.setitem(files.FORMATS, ".stl", Format(fail, None))
+    monkeypatch.setitem(files.SURFACE_FORMATS, ".stl", Format(fail, None))
     with pytest.raises(RuntimeError, match="half-way"):
         save(old, *ring())
     assert_untouched(old)
@@ -174,4 +174,4 @@ def test_names_with_spaces_and_letters_of_any_kind(tmp_path):
 def test_store_writes_what_it_is_given(tmp_path):
     store(writable(tmp_path / "a.json", [".json"]), b"{}")
     assert (tmp_path / "a.json").read_bytes() == b"{}"
-    assert ".json" not in FORMATS
+    assert ".json" not in SURFACE_FORMATS

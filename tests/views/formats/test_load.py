@@ -13,10 +13,10 @@ from views.plates import cells, ring, strip
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter
 
 from img2tri.errors import FileError, Img2triError, MeshError
-from img2tri.views.formats.save_load import FORMATS, load, save
-from img2tri.views.objects.to_pyvista import to_grid, to_pyvista
+from img2tri.views.formats.save_load import SURFACE_FORMATS, load, save
+from img2tri.views.objects.to_pyvista import to_elements, to_pyvista
 
-READABLE = [suffix for suffix, form in FORMATS.items() if form.read]
+READABLE = [suffix for suffix, form in SURFACE_FORMATS.items() if form.read]
 
 
 def corners_with_regions(vertices, triangles, regions):
@@ -36,7 +36,7 @@ def test_what_was_saved_is_loaded(tmp_path, suffix):
     assert (v.shape, v.dtype) == ((14, 2), np.float64)
     assert (t.shape, t.dtype) == ((12, 3), np.int64)
     assert r.dtype == np.int64
-    single, known = FORMATS[suffix].single, suffix not in {".stl", ".off"}
+    single, known = SURFACE_FORMATS[suffix].single, suffix not in {".stl", ".off"}
     rounded = vertices.astype(np.float32).astype(float) if single else vertices
     expected = corners_with_regions(rounded, triangles, regions if known else np.ones(12))
     assert np.array_equal(corners_with_regions(v, t, r), expected)
@@ -87,7 +87,7 @@ def test_every_way_vtk_writes_xml_is_read(tmp_path, grid, compressed, wide, way)
     vertices, triangles = cells(np.ones((60, 80), bool))
     regions = np.arange(len(triangles)) % 5
     writer = vtkXMLUnstructuredGridWriter() if grid else vtkXMLPolyDataWriter()
-    writer.SetInputData((to_grid if grid else to_pyvista)(vertices, triangles, regions))
+    writer.SetInputData((to_elements if grid else to_pyvista)(vertices, triangles, regions))
     writer.SetFileName(str(tmp_path / ("a.vtu" if grid else "a.vtp")))
     {"ascii": writer.SetDataModeToAscii, "binary": writer.SetDataModeToBinary}.get(way, writer.SetDataModeToAppended)()
     writer.SetEncodeAppendedData(way != "raw")

@@ -17,7 +17,7 @@ import trimesh
 from views.plates import STRIP_AREA, is_closed, ring, strip, volume
 
 from img2tri.errors import FileError
-from img2tri.views.formats.save_load import FORMATS, save
+from img2tri.views.formats.save_load import SURFACE_FORMATS, save
 
 HEIGHT = 1.5
 TEXTS = {"units": "cm", "made": json.dumps({"edge": "--8px", "name": "Ü\n<&>"})}
@@ -248,9 +248,9 @@ def test_vtk_files_keep_everything(tmp_path, plate, suffix):
 def test_the_same_mesh_gives_the_same_bytes_at_any_time_in_any_process(tmp_path, monkeypatch):
     code = """
 import sys
-from img2tri.views.formats.save_load import FORMATS, save
+from img2tri.views.formats.save_load import SURFACE_FORMATS, save
 vertices, triangles = [[0, 0], [1, 0], [1, 1], [0, 1 / 3]], [[0, 1, 2], [0, 2, 3]]
-for suffix in FORMATS:
+for suffix in SURFACE_FORMATS:
     for name, height in (("flat", None), ("solid", 2.0)):
         options = {"height": height, "cell_data": {"q": [0.1, 0.2]}, "field_data": {"b": "1", "a": "2"}}
         save(f"{folder}/{name}{suffix}", vertices, triangles, [3, 7], **options)
@@ -262,12 +262,12 @@ for suffix in FORMATS:
     later = time.time() + 1e8
     monkeypatch.setattr(time, "time", lambda: later)
     exec(code, {"folder": str(here)})
-    assert len(list(here.iterdir())) == 2 * len(FORMATS)
+    assert len(list(here.iterdir())) == 2 * len(SURFACE_FORMATS)
     for path in here.iterdir():
         assert path.read_bytes() == (there / path.name).read_bytes(), path.name
 
 
-@pytest.mark.parametrize("suffix", list(FORMATS))
+@pytest.mark.parametrize("suffix", list(SURFACE_FORMATS))
 def test_the_options_change_the_file(tmp_path, plate, suffix):
     """Each of z, height and regions; cell_data and field_data where the format can hold them."""
 

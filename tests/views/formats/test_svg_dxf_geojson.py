@@ -14,7 +14,7 @@ import trimesh
 from views.plates import ring, strip
 
 from img2tri.errors import FileError, MeshError
-from img2tri.views.formats.svg_dxf_geojson import FORMATS, save_outlines
+from img2tri.views.formats.svg_dxf_geojson import DRAWING_FORMATS, save_outlines
 
 SVG = "{http://www.w3.org/2000/svg}"
 TEXTS = {"units": "mm", "img2tri": json.dumps({"recipe": "conforming", "source": "Ü --> <&>"})}
@@ -196,7 +196,7 @@ def test_geojson_holds_the_edges_of_the_mesh(tmp_path, outlines):
     assert {tuple(p) for line in last["geometry"]["coordinates"] for p in line} == {tuple(p) for p in vertices.tolist()}
 
 
-@pytest.mark.parametrize("suffix", sorted(FORMATS))
+@pytest.mark.parametrize("suffix", sorted(DRAWING_FORMATS))
 def test_the_same_drawing_gives_the_same_bytes(tmp_path, outlines, suffix):
     files = [tmp_path / f"{name}{suffix}" for name in "ab"]
     for file in files:

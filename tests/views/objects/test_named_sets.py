@@ -11,7 +11,7 @@ from views.plates import cells, ring
 from views.solver_meshes import AREAS, BOUNDS, LENGTHS, NAMES, SIZE, TAGS, plate
 
 from img2tri import MeshError, ParameterError, mesh_image
-from img2tri.views.objects.named_sets import FRAME, named_sets, rings
+from img2tri.views.objects.named_sets import FRAME, boundary_rings, named_sets
 
 MAPS = {**specimens.MASKS, **specimens.LABELS}
 
@@ -174,8 +174,8 @@ def test_two_holes_that_touch_in_a_vertex_are_one():
     assert oracles.pixel_topology(mask)[1] == 1
 
 
-def test_rings_enclose_what_they_do():
-    sides, number, area = rings(*ring())
+def test_boundary_rings_enclose_what_they_do():
+    sides, number, area = boundary_rings(*ring())
     assert sorted(area.tolist()) == [-4, 16]
     assert np.bincount(number).tolist() in ([16, 8], [8, 16])
     assert len(sides) == 24

@@ -8,8 +8,8 @@ import pytest
 from views.plates import STRIP_AREA, ring, strip
 
 from img2tri.errors import MeshError, ParameterError
-from img2tri.views.objects.surface import surface
-from img2tri.views.objects.to_pyvista import to_grid, to_pyvista
+from img2tri.views.objects.flat_or_extruded import surface
+from img2tri.views.objects.to_pyvista import to_elements, to_pyvista
 from img2tri.views.objects.to_trimesh import to_trimesh
 
 
@@ -73,7 +73,7 @@ def test_pyvista_solid():
 
 def test_pyvista_grid():
     vertices, triangles, regions = strip()
-    made = to_grid(vertices, triangles, regions)
+    made = to_elements(vertices, triangles, regions)
     assert np.array_equal(made.cells_dict[5], triangles)
     assert made.points.dtype == np.float64
     assert np.array_equal(made.cell_data["region"], regions)

@@ -12,8 +12,9 @@ from views.plates import STRIP_AREA, cells, is_closed, ring, strip, volume
 from img2tri.arrays import unique_edges
 from img2tri.errors import MeshError, ParameterError
 from img2tri.triangles.tools import topology
-from img2tri.views.objects.edges import bordering
-from img2tri.views.objects.wedges import quadratic, to_elements, wedges
+from img2tri.views.objects.region_borders import bordering
+from img2tri.views.objects.to_pyvista import to_elements
+from img2tri.views.objects.wedges import quadratic, wedges
 
 GAUSS = np.array([-1, 1]) / np.sqrt(3)
 INSIDE = np.array([[1, 1], [4, 1], [1, 4]]) / 6  # of the triangle, exact for squares

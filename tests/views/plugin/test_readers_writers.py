@@ -20,7 +20,7 @@ from img2tri.views.formats.solvers.inp import inp
 from img2tri.views.formats.solvers.msh import msh
 from img2tri.views.formats.solvers.vtu_vtkhdf import to_grid
 from img2tri.views.formats.solvers.xdmf import xdmf
-from img2tri.views.objects.cells import flat_cells
+from img2tri.views.objects.solver_cells import flat_cells
 from img2tri.views.plugin import readers_writers as plugins
 
 PROJECT = Path(img2tri.__file__).parents[1] / "pyproject.toml"

@@ -1,12 +1,16 @@
-"""The formats of solvers: cells with named parts -> the bytes of a file, and back.
+"""The formats of solvers: `img2tri.views.objects.solver_cells.Cells` -> the bytes of a file, and back.
 
-bdf           BDF, the bulk data of Nastran: GRID, CTRIA3 / CTRIA6 or CPENTA, a property for each region, a SET1 of nodes for each s
-inp           INP, the format of Abaqus and CalculiX: nodes, elements, and NSET, ELSET and SURFACE for every name.
-msh           MSH, the format of Gmsh, version 4.1 or 2.2, in text: regions and sets of facets are physical groups with their names.
-read_inp      INP read back: the bytes of a file of Abaqus or CalculiX -> cells of one kind, with regions, names, and the facets of
-read_msh_bdf  MSH and BDF read back: the bytes of a file -> cells of one kind, with regions, names, and the facets of each set.
-solver_files  A mesh as a file for solvers: the suffix names the format, and one table names who writes it and with which options.
-text          What the formats in plain text have in common: numbers in columns, numbers in rows, notes, names.
-vtu_vtkhdf    VTU and VTKHDF, the formats of VTK for meshes of cells, with the named parts as field data.
-xdmf          XDMF, as FEniCSx reads it: the cells in one file, the facets of all sets in another, each a single grid.
+    save_for_solvers  save: the table of formats by suffix, with the options of each
+    msh               writes MSH, of Gmsh and what reads its files: nodes, elements, physical groups
+    inp               writes INP, of Abaqus and CalculiX: ELSET, NSET, SURFACE; an analysis that runs
+    bdf               writes BDF, of Nastran: GRID, CTRIA3, CPENTA, SET1
+    xdmf              writes XDMF, of FEniCSx
+    vtu_vtkhdf        writes VTU and VTKHDF, with named parts, for ParaView and pyvista
+    plain_text        what those in plain text have in common: numbers in columns, comments, names that a format allows
+    read_msh_bdf      reads MSH and BDF
+    read_inp          reads INP
+
+They are written here because the library that knows most of them, meshio, has no surfaces, no names in Nastran, no edges beside triangles
+in MSH 4.1, and writes triangles for Abaqus as rigid ones with more digits than Abaqus reads. Every format is read back in the tests by a
+program that has nothing to do with this one.
 """

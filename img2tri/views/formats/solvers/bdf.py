@@ -11,12 +11,12 @@ from __future__ import annotations
 import numpy as np
 
 from img2tri.types import Floats
-from img2tri.views.formats.solvers.text import MARK, fitted, in_lines, notes, numbered
-from img2tri.views.objects.cells import Cells
+from img2tri.views.formats.solvers.plain_text import MARK, comment_lines, fitted_number, in_lines, numbered
+from img2tri.views.objects.solver_cells import Cells
 
 # Card of each kind, and its order of the nodes where that is not the one of VTK: upright edges come before those of the top.
 _CARDS = {"triangle": "CTRIA3", "triangle6": "CTRIA6", "wedge": "CPENTA", "wedge15": "CPENTA"}
-ORDERS = {"wedge15": [0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11]}
+NASTRAN_ORDERS = {"wedge15": [0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11]}
 _FIELDS = 8  # of 8 characters each in a line, between name and continuation
 
 
@@ -28,8 +28,8 @@ def bdf(made: Cells) -> dict[str, bytes]:
     dict
         The bytes of the file, under "".
     """
-    lines = [f"$ {MARK}", *notes(made.texts, "$ "), "CEND", "BEGIN BULK", *_grid(made.points)]
-    cells = made.cells[:, ORDERS.get(made.kind, slice(None))] + 1
+    lines = [f"$ {MARK}", *comment_lines(made.texts, "$ "), "CEND", "BEGIN BULK", *_grid_cards(made.points)]
+    cells = made.cells[:, NASTRAN_ORDERS.get(made.kind, slice(None))] + 1
     for label, name in made.names.items():
         mine, number = np.flatnonzero(made.regions == label), made.ids[label]
         lines.append(f"$HMNAME COMP {number:>19}{_quoted(name)}")
@@ -44,9 +44,9 @@ def bdf(made: Cells) -> dict[str, bytes]:
     return {"": ("\n".join(line.rstrip() for line in [*lines, "ENDDATA"]) + "\n").encode("ascii", "backslashreplace")}
 
 
-def _grid(points: Floats) -> list[str]:
+def _grid_cards(points: Floats) -> list[str]:
     """Write points in the large format: two lines each, for the fields of 16 characters."""
-    x, y, z = ([fitted(value, 16) for value in column] for column in points.T.tolist())
+    x, y, z = ([fitted_number(value, 16) for value in column] for column in points.T.tolist())
     return [f"GRID*   {i:<16}{'':16}{a:<16}{b}\n*       {c}" for i, (a, b, c) in enumerate(zip(x, y, z, strict=True), 1)]
 
 

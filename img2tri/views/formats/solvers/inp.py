@@ -2,10 +2,9 @@
 
 Each region is an ELSET; each set of facets an NSET of its nodes and a SURFACE of its element sides, an interface that of the region that
 comes first in its name. The file holds the mesh and nothing else, to be included in an analysis by ``*INCLUDE, INPUT=mesh.inp``, or in a
-``*PART``. Names are made to fit, see `img2tri.views.formats.solvers.text.identifiers`; comments tell where one had to be changed, and the
-label of
-each region. Lines and numbers keep to the limits of Abaqus, 20 characters for a number. Plane elements lie at z = 0, whatever the height of
-the mesh, as CalculiX takes no others.
+``*PART``. Names are made to fit, see `img2tri.views.formats.solvers.plain_text`; comments tell where one had to be changed, and the label
+of each region. Lines and numbers keep to the limits of Abaqus, 20 characters for a number. Plane elements lie at z = 0, whatever the height
+of the mesh, as CalculiX takes no others.
 
 With ``deck=True`` it is an analysis that runs as it is, to be filled with the materials and loads of the user: every separate body is held
 at its lowest boundary vertices and drawn up at its highest.
@@ -20,12 +19,12 @@ import numpy as np
 
 from img2tri.errors import MeshError, choice
 from img2tri.types import Bools, Floats
-from img2tri.views.formats.solvers.text import MARK, fitted, identifiers, in_lines, notes, numbered
-from img2tri.views.objects.cells import Z_MIN, Cells
-from img2tri.views.objects.named_sets import rings
+from img2tri.views.formats.solvers.plain_text import MARK, comment_lines, fitted_number, identifiers, in_lines, numbered
+from img2tri.views.objects.named_sets import boundary_rings
+from img2tri.views.objects.solver_cells import Z_MIN, Cells
 
 PLANES = ("stress", "strain")
-_TYPES = {"wedge": "C3D6", "wedge15": "C3D15"}  # nodes in the order of VTK
+_SOLID_ELEMENTS = {"wedge": "C3D6", "wedge15": "C3D15"}  # nodes in the order of VTK
 _IN_PLANE = {"triangle": 3, "triangle6": 6}
 _FACES = {True: np.array([3, 4, 5, 1, 2]), False: np.array([1, 2, 3])}  # Abaqus's number of each side, of wedges and triangles
 _END = 0.01  # share of a body's height that is held, and drawn
@@ -58,12 +57,12 @@ def inp(made: Cells, *, deck: bool = False, plane: str = "stress") -> dict[str, 
         If an analysis is wanted of wedges that do not stand in layers on a plane mesh.
     """
     letters = {"stress": "CPS", "strain": "CPE"}[choice("plane", plane, PLANES)]
-    kind = _TYPES[made.kind] if made.solid else f"{letters}{_IN_PLANE[made.kind]}"
+    kind = _SOLID_ELEMENTS[made.kind] if made.solid else f"{letters}{_IN_PLANE[made.kind]}"
     named = identifiers(chain(made.names.values(), made.sides), taken=("HELD", "DRAWN"))
     lines = ["*HEADING", "img2tri"] if deck else []
-    lines += [f"** {MARK}", *notes(made.texts, "** ")]
-    lines += notes({"labels": json.dumps({named[name]: label for label, name in made.names.items()})}, "** ")
-    lines += notes({plain: f"named {name}" for name, plain in named.items() if plain != name}, "** ")
+    lines += [f"** {MARK}", *comment_lines(made.texts, "** ")]
+    lines += comment_lines({"labels": json.dumps({named[name]: label for label, name in made.names.items()})}, "** ")
+    lines += comment_lines({plain: f"named {name}" for name, plain in named.items() if plain != name}, "** ")
     lines += ["*NODE", *_nodes(made.points if made.solid else made.points * (1, 1, 0) + 0.0)]
     for label, name in made.names.items():
         mine = np.flatnonzero(made.regions == label)
@@ -79,7 +78,7 @@ def inp(made: Cells, *, deck: bool = False, plane: str = "stress") -> dict[str, 
 
 
 def _nodes(points: Floats) -> list[str]:
-    texts = [[fitted(x, 20) for x in column] for column in points.T.tolist()]
+    texts = [[fitted_number(x, 20) for x in column] for column in points.T.tolist()]
     return [f"{i}, {x}, {y}, {z}" for i, (x, y, z) in enumerate(zip(*texts, strict=True), 1)]
 
 
@@ -89,8 +88,8 @@ def _analysis(made: Cells, regions: list[str]) -> list[str]:
     for name in regions:
         lines += [f"*MATERIAL, NAME={name}", "*ELASTIC", "1000., 0.3", f"*SOLID SECTION, ELSET={name}, MATERIAL={name}"]
         lines += [] if made.solid else ["1."]
-    held, drawn = _ends(made)
-    up = fitted(_STRETCH * float(np.ptp(made.points[:, 1])), 20)
+    held, drawn = _held_and_drawn(made)
+    up = fitted_number(_STRETCH * float(np.ptp(made.points[:, 1])), 20)
     return [
         *lines,
         "*NSET, NSET=HELD", *in_lines((np.flatnonzero(held) + 1).tolist(), 16),
@@ -102,13 +101,13 @@ def _analysis(made: Cells, regions: list[str]) -> list[str]:
     ]  # fmt: skip
 
 
-def _ends(made: Cells) -> tuple[Bools, Bools]:
+def _held_and_drawn(made: Cells) -> tuple[Bools, Bools]:
     """Return the nodes at the lower end of each body, which is within one outer ring of the boundary, and those at its upper end."""
     if made.solid and Z_MIN not in made.sides:
         raise MeshError("deck: expected wedges in layers, so that their ends are known, found others; write the mesh alone")
     flat = made.cells[: len(made.sides[Z_MIN]), :3] if made.solid else made.cells[:, :3]
     corners, y = flat.ravel(), made.points[:, 1]
-    sides, ring, area = rings(made.points, flat)
+    sides, ring, area = boundary_rings(made.points, flat)
     on = corners[sides]
     low, high = np.full(len(area), np.inf), np.full(len(area), -np.inf)
     np.minimum.at(low, ring, y[on])

@@ -11,14 +11,14 @@ import numpy as np
 
 from img2tri.errors import ParameterError
 from img2tri.types import Floats, Ints
-from img2tri.views.formats.solvers.text import MARK, notes, numbered
+from img2tri.views.formats.solvers.plain_text import MARK, comment_lines, numbered
 from img2tri.views.formats.stl_ply_obj_off import rows
-from img2tri.views.objects.cells import Cells
+from img2tri.views.objects.solver_cells import Cells
 
 # Gmsh's number of each type of element, and its order of the nodes where that is not the one of VTK.
-TYPES = {"triangle": 2, "triangle6": 9, "wedge": 6, "wedge15": 18}
-ORDERS = {"wedge15": [0, 1, 2, 3, 4, 5, 6, 8, 12, 7, 13, 14, 9, 11, 10]}
-_FACETS = {(1, 2): 1, (1, 3): 8, (2, 3): 2, (2, 4): 3, (2, 6): 9, (2, 8): 16}  # by dimension and number of nodes
+GMSH_TYPES = {"triangle": 2, "triangle6": 9, "wedge": 6, "wedge15": 18}
+GMSH_ORDERS = {"wedge15": [0, 1, 2, 3, 4, 5, 6, 8, 12, 7, 13, 14, 9, 11, 10]}
+_FACET_TYPES = {(1, 2): 1, (1, 3): 8, (2, 3): 2, (2, 4): 3, (2, 6): 9, (2, 8): 16}  # by dimension and number of nodes
 VERSIONS = ("4.1", "2.2")
 
 
@@ -46,10 +46,10 @@ def msh(made: Cells, *, version: str = "4.1") -> dict[str, bytes]:
         raise ParameterError(f"version: expected '4.1' or '2.2', found {version!r}")
     groups = _groups(made)
     lines = ["$MeshFormat", f"{version} 0 8", "$EndMeshFormat"]
-    lines += ["$Comments", MARK, *notes(made.texts, ""), "$EndComments"]
-    names = ['{} {} "{}"'.format(*key, _quoted(name)) for key, (name, *_) in groups.items()]
+    lines += ["$Comments", MARK, *comment_lines(made.texts, ""), "$EndComments"]
+    names = ['{} {} "{}"'.format(*key, _unquoted(name)) for key, (name, *_) in groups.items()]
     lines += ["$PhysicalNames", str(len(names)), *names, "$EndPhysicalNames"]
-    lines += _version_4(made.points, groups) if version == "4.1" else _version_2(made.points, groups)
+    lines += _write_version_4(made.points, groups) if version == "4.1" else _write_version_2(made.points, groups)
     return {"": ("\n".join(lines) + "\n").encode()}
 
 
@@ -67,7 +67,7 @@ def _groups(made: Cells) -> _Groups:
         facets = made.facets(name) + 1
         groups[inside - 1, made.tags[name]] = name, facets, count + 1 + np.arange(len(facets))
         count += len(facets)
-    cells = made.cells[:, ORDERS.get(made.kind, slice(None))] + 1
+    cells = made.cells[:, GMSH_ORDERS.get(made.kind, slice(None))] + 1
     for label, name in made.names.items():
         mine = np.flatnonzero(made.regions == label)
         groups[inside, made.ids[label]] = name, cells[mine], count + 1 + mine
@@ -78,11 +78,11 @@ def _type(dimension: int, elements: Ints, inside: int) -> int:
     """Return Gmsh's number of the type of some elements; `inside` is the dimension of the cells."""
     nodes = elements.shape[1]
     if dimension < inside:
-        return _FACETS[dimension, nodes]
-    return TYPES[{(2, 3): "triangle", (2, 6): "triangle6", (3, 6): "wedge", (3, 15): "wedge15"}[inside, nodes]]
+        return _FACET_TYPES[dimension, nodes]
+    return GMSH_TYPES[{(2, 3): "triangle", (2, 6): "triangle6", (3, 6): "wedge", (3, 15): "wedge15"}[inside, nodes]]
 
 
-def _version_2(points: Floats, groups: _Groups) -> list[str]:
+def _write_version_2(points: Floats, groups: _Groups) -> list[str]:
     lines = ["$Nodes", str(len(points)), *numbered("{} {!r} {!r} {!r}", points, np.arange(1, len(points) + 1)), "$EndNodes"]
     lines += ["$Elements", str(sum(len(elements) for _, elements, _ in groups.values()))]
     inside = max(groups)[0]
@@ -92,7 +92,7 @@ def _version_2(points: Floats, groups: _Groups) -> list[str]:
     return [*lines, "$EndElements"]
 
 
-def _version_4(points: Floats, groups: _Groups) -> list[str]:
+def _write_version_4(points: Floats, groups: _Groups) -> list[str]:
     """Nodes belong to the first entity that has them, facets before cells: so those on a boundary are known to be there."""
     owner = np.full(len(points), len(groups))
     for i, (_, elements, _) in reversed(list(enumerate(groups.values()))):
@@ -117,6 +117,6 @@ def _version_4(points: Floats, groups: _Groups) -> list[str]:
     return [*lines, "$EndElements"]
 
 
-def _quoted(name: str) -> str:
+def _unquoted(name: str) -> str:
     """Return a name as it can stand in double quotes."""
     return " ".join(name.replace('"', "'").split())

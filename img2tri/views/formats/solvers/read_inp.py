@@ -15,12 +15,12 @@ import numpy as np
 from img2tri.errors import MeshError
 from img2tri.types import Ints
 from img2tri.views.formats.solvers.read_msh_bdf import Found
-from img2tri.views.objects.cells import FLAT, SIDES, SOLID
+from img2tri.views.objects.solver_cells import CELL_SIDES, FLAT_KINDS, SOLID_KINDS
 
 # Families of elements of Abaqus; behind their letters stands the number of nodes, then at most letters for variants.
-_FLAT = re.compile(r"(?:CPS|CPE|CPEG|CAX|M3D|DC2D|DCAX|STRI|SFM3D|R3D|S)([36])[A-Z]*")
-_SOLID = re.compile(r"(?:C3D|DC3D|AC3D)(6|15)[A-Z]*")
-_SIDES = {True: (3, 4, 0, 1, 2), False: (0, 1, 2)}  # of wedges and triangles: ours, in the order of Abaqus
+_FLAT_ELEMENTS = re.compile(r"(?:CPS|CPE|CPEG|CAX|M3D|DC2D|DCAX|STRI|SFM3D|R3D|S)([36])[A-Z]*")
+_SOLID_ELEMENTS_READ = re.compile(r"(?:C3D|DC3D|AC3D)(6|15)[A-Z]*")
+_ABAQUS_SIDES = {True: (3, 4, 0, 1, 2), False: (0, 1, 2)}  # of wedges and triangles: ours, in the order of Abaqus
 
 
 def is_abaqus(data: bytes) -> bool:
@@ -34,7 +34,7 @@ def is_abaqus(data: bytes) -> bool:
     return data.lstrip()[:1] == b"*"
 
 
-def read_inp(data: bytes) -> Found:
+def parse_inp(data: bytes) -> Found:
     r"""Read nodes, elements, SURFACE and NSET.
 
     Labels of regions are those in the comments of img2tri; of others they are numbers from 1 on.
@@ -48,31 +48,31 @@ def read_inp(data: bytes) -> Found:
 
     Examples
     --------
-    >>> found = read_inp(b"*NODE\n1, 0, 0\n2, 1, 0\n3, 0, 1\n*ELEMENT, TYPE=S3, ELSET=wing\n1, 1, 2, 3\n")
+    >>> found = parse_inp(b"*NODE\n1, 0, 0\n2, 1, 0\n3, 0, 1\n*ELEMENT, TYPE=S3, ELSET=wing\n1, 1, 2, 3\n")
     >>> found.cells.tolist(), found.kind, found.names
     ([[0, 1, 2]], 'triangle', {1: 'wing'})
     """
     text = data.decode().replace("\r\n", "\n")
     said = dict(re.findall(r"^\*\* (\w+): (.*)$", text.replace("\n**    ", ""), re.MULTILINE))
     called = {plain: _unescaped(line.removeprefix("named ")) for plain, line in said.items() if line.startswith("named ")}
-    blocks = list(_blocks(text))
+    blocks = list(_keyword_blocks(text))
     rows = [[*map(float, line.strip(" ,").split(",")), 0.0][:4] for key, _, lines in blocks if key == "NODE" for line in lines]
     nodes = np.array(rows).reshape(-1, 4)
     numbers = nodes[:, 0].astype(np.int64)
 
     parts = [(options.get("ELSET", ""), lines) for key, options, lines in blocks if key == "ELEMENT"]
     kind, width = _kind({options["TYPE"].upper() for key, options, _ in blocks if key == "ELEMENT"})
-    tables = [np.array(_whole(lines)).reshape(-1, 1 + width) for _, lines in parts]
-    labels = _labels([name for name, _ in parts], json.loads(said.get("labels", "{}")))
+    tables = [np.array(_whole_numbers(lines)).reshape(-1, 1 + width) for _, lines in parts]
+    labels = _labels_of_sets([name for name, _ in parts], json.loads(said.get("labels", "{}")))
     order = np.argsort(np.concatenate(tables)[:, 0], kind="stable")
     elements = np.concatenate(tables)[order]
     regions = np.repeat([labels[name] for name, _ in parts], [len(table) for table in tables])[order]
-    cells = _place(numbers, elements[:, 1:])
+    cells = _rows_of(numbers, elements[:, 1:])
 
     facets: dict[str, Ints] = {}
     for key, options, lines in blocks:
         if key == "NSET" and "GENERATE" not in options:
-            facets[options["NSET"]] = _place(numbers, np.array(_whole(lines), np.int64)[:, None])
+            facets[options["NSET"]] = _rows_of(numbers, np.array(_whole_numbers(lines), np.int64)[:, None])
     for key, options, lines in blocks:
         if key == "SURFACE" and options.get("TYPE", "ELEMENT").upper() == "ELEMENT":
             facets |= _facets(options["NAME"], lines, elements[:, 0], cells, kind)
@@ -80,7 +80,7 @@ def read_inp(data: bytes) -> Found:
     return Found(nodes[:, 1:], cells, kind, regions, names, {called.get(name, name): part for name, part in facets.items()})
 
 
-def _blocks(text: str) -> Iterator[tuple[str, dict[str, str], list[str]]]:
+def _keyword_blocks(text: str) -> Iterator[tuple[str, dict[str, str], list[str]]]:
     """Cut an INP into keywords, their options, and their lines of data."""
     keyword, data = "", list[str]()
     for line in [*text.splitlines(), "*"]:
@@ -98,7 +98,7 @@ def _unescaped(text: str) -> str:
     return re.sub(r"\\x[0-9a-f]{2}|\\u[0-9a-f]{4}|\\U[0-9a-f]{8}", lambda code: chr(int(code[0][2:], 16)), text)
 
 
-def _whole(lines: list[str]) -> list[int]:
+def _whole_numbers(lines: list[str]) -> list[int]:
     return [int(word) for line in lines for word in line.split(",") if word.strip()]
 
 
@@ -106,14 +106,14 @@ def _kind(types: set[str]) -> tuple[str, int]:
     """Return the kind of cells that all these types of elements are, and its number of nodes."""
     kinds = set()
     for name in types:
-        flat, solid = _FLAT.fullmatch(name), _SOLID.fullmatch(name)
-        kinds.add((FLAT[int(flat[1])], int(flat[1])) if flat else (SOLID[int(solid[1])], int(solid[1])) if solid else ("", 0))
+        flat, solid = _FLAT_ELEMENTS.fullmatch(name), _SOLID_ELEMENTS_READ.fullmatch(name)
+        kinds.add((FLAT_KINDS[int(flat[1])], int(flat[1])) if flat else (SOLID_KINDS[int(solid[1])], int(solid[1])) if solid else ("", 0))
     if len(kinds) != 1 or ("", 0) in kinds:
         raise MeshError("expected cells that are all triangles or all wedges, found " + ("others" if kinds else "none"))
     return kinds.pop()
 
 
-def _labels(sets: list[str], known: dict[str, int]) -> dict[str, int]:
+def _labels_of_sets(sets: list[str], known: dict[str, int]) -> dict[str, int]:
     """Return the label of each set of elements: that which is known, or the next free number."""
     labels = {name: int(known[name]) for name in sets if name in known}
     for name in sets:
@@ -121,7 +121,7 @@ def _labels(sets: list[str], known: dict[str, int]) -> dict[str, int]:
     return labels
 
 
-def _place(numbers: Ints, wanted: Ints) -> Ints:
+def _rows_of(numbers: Ints, wanted: Ints) -> Ints:
     """Look up in which rows the nodes have these numbers."""
     order = np.argsort(numbers)
     found = order[np.searchsorted(numbers, wanted, sorter=order).clip(max=len(numbers) - 1)]
@@ -133,8 +133,8 @@ def _place(numbers: Ints, wanted: Ints) -> Ints:
 def _facets(name: str, lines: list[str], numbers: Ints, cells: Ints, kind: str) -> dict[str, Ints]:
     """Return the nodes of the sides of elements that make a surface, if all are given one by one, and alike."""
     rows = [re.fullmatch(r"\s*(\d+)\s*,\s*S(\d)\s*,?\s*", line, re.IGNORECASE) for line in lines]
-    sides = [(int(row[1]), SIDES[kind][_SIDES[kind in SOLID.values()][int(row[2]) - 1]]) for row in rows if row]
+    sides = [(int(row[1]), CELL_SIDES[kind][_ABAQUS_SIDES[kind in SOLID_KINDS.values()][int(row[2]) - 1]]) for row in rows if row]
     if len(sides) < len(rows) or len({len(nodes) for _, nodes in sides}) != 1:
         return {}
-    cell = _place(numbers, np.array([number for number, _ in sides]))
+    cell = _rows_of(numbers, np.array([number for number, _ in sides]))
     return {name: cells[cell[:, None], np.array([nodes for _, nodes in sides])]}

@@ -21,7 +21,7 @@ from img2tri.views.formats.solvers import bdf, msh
 
 # Number of nodes of each of Gmsh's types of element.
 _NODES = (0, 2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27, 18, 14, 1, 8, 20, 15, 13)
-_GMSH = {number: kind for kind, number in msh.TYPES.items()}
+_GMSH = {number: kind for kind, number in msh.GMSH_TYPES.items()}
 _NASTRAN = {("CTRIA3", 3): "triangle", ("CTRIA6", 6): "triangle6", ("CPENTA", 6): "wedge", ("CPENTA", 15): "wedge15"}
 
 
@@ -34,7 +34,7 @@ class Found:
     points
         (p, 3) float64.
     cells, kind
-        As in `img2tri.views.objects.cells.Cells`.
+        As in `img2tri.views.objects.solver_cells.Cells`.
     regions
         (m,) int64, the number of each cell's physical group or property, or the label in its name; 0 without one.
     names
@@ -55,7 +55,7 @@ class Found:
 _Blocks = list[tuple[int, int, int, Ints]]
 
 
-def read_msh(data: bytes) -> Found:
+def parse_msh(data: bytes) -> Found:
     """Read MSH 2.2 or 4.1 in text.
 
     Raises
@@ -69,7 +69,7 @@ def read_msh(data: bytes) -> Found:
     version, binary, _ = sections["MeshFormat"].split()
     if version not in msh.VERSIONS or binary != "0":
         raise ValueError(f"expected MSH 2.2 or 4.1 in text, found {version} in {'text' if binary == '0' else 'binary'}")
-    numbers, points, blocks = (_version_4 if version == "4.1" else _version_2)(sections)
+    numbers, points, blocks = (_read_version_4 if version == "4.1" else _read_version_2)(sections)
     place = np.full(int(numbers.max(initial=0)) + 1, -1)
     place[numbers] = np.arange(len(numbers))
     names = {
@@ -85,10 +85,10 @@ def read_msh(data: bytes) -> Found:
             facets[names[dimension, group]].append(place[rows[:, 1:]])
     alike = {name: np.concatenate(parts) for name, parts in facets.items() if len({part.shape[1] for part in parts}) == 1}
     called = {group: name for (dimension, group), name in names.items() if dimension == top}
-    return _whole(points, table, place, kind, msh.ORDERS, called, alike)
+    return _assembled(points, table, place, kind, msh.GMSH_ORDERS, called, alike)
 
 
-def read_bdf(data: bytes) -> Found:
+def parse_bdf(data: bytes) -> Found:
     """Read the bulk data of Nastran: GRID, triangles or wedges, SET1, and names in the comments of HyperMesh.
 
     Raises
@@ -117,7 +117,7 @@ def read_bdf(data: bytes) -> Found:
     called = {int(number): name for number, name in re.findall(r'^\$HMNAME COMP\s+(\d+)\s*"(.*?)"', text, re.MULTILINE)}
     known = {int(number): name for number, name in re.findall(r'^\$HMSET\s+(\d+)\s+1\s*"(.*?)"', text, re.MULTILINE)}
     nodes = {known[number]: place[members][:, None] for number, members in sets.items() if number in known}
-    return _whole(np.array([places[number] for number in numbers.tolist()]), table, place, kind, bdf.ORDERS, called, nodes)
+    return _assembled(np.array([places[number] for number in numbers.tolist()]), table, place, kind, bdf.NASTRAN_ORDERS, called, nodes)
 
 
 def by_text(data: bytes, suffix: str) -> tuple[Floats, Ints, Ints]:
@@ -136,7 +136,7 @@ def by_text(data: bytes, suffix: str) -> tuple[Floats, Ints, Ints]:
     return found.points, found.cells, found.regions
 
 
-def _whole(
+def _assembled(
     points: Floats, table: Ints, place: Ints, kind: str, orders: dict[str, list[int]], names: dict[int, str], facets: dict[str, Ints]
 ) -> Found:
     """Put together what was read; `table` has for each cell its number, that of its region, and those of its nodes, in `orders`."""
@@ -160,7 +160,7 @@ def _one_kind(parts: list[tuple[str, NDArray[Any]]]) -> tuple[str, NDArray[Any]]
     return kinds.pop(), np.concatenate([rows for _, rows in parts])
 
 
-def _version_4(sections: dict[str, str]) -> tuple[Ints, Floats, _Blocks]:
+def _read_version_4(sections: dict[str, str]) -> tuple[Ints, Floats, _Blocks]:
     """Return the numbers of the nodes, their places, and the blocks of elements."""
     words = iter(map(float, sections.get("Entities", "0 0 0 0").split()))
     group = {}
@@ -192,7 +192,7 @@ def _version_4(sections: dict[str, str]) -> tuple[Ints, Floats, _Blocks]:
     return all_numbers[order], np.concatenate(points)[order], blocks
 
 
-def _version_2(sections: dict[str, str]) -> tuple[Ints, Floats, _Blocks]:
+def _read_version_2(sections: dict[str, str]) -> tuple[Ints, Floats, _Blocks]:
     """Return the numbers of the nodes, their places, and the blocks of elements."""
     nodes = np.array(sections["Nodes"].split()[1:], np.float64).reshape(-1, 4)
     rows: dict[tuple[int, int], list[list[int]]] = defaultdict(list)
@@ -233,4 +233,4 @@ def _real(text: str) -> float:
     return float(re.sub(r"(?<=[\d.])D?([+-]?\d+)$", r"E\1", text) if re.search(r"[\d.](D|[+-]\d)", text) else text or 0)
 
 
-READERS = {".msh": read_msh, ".bdf": read_bdf}
+READERS = {".msh": parse_msh, ".bdf": parse_bdf}

@@ -22,12 +22,13 @@ import numpy as np
 
 from img2tri.errors import FileError
 from img2tri.types import Floats, Ints
-from img2tri.views.objects.cells import Cells
+from img2tri.views.formats.vtp_vtu import vtu_of_grid
+from img2tri.views.objects.solver_cells import Cells
 
 if TYPE_CHECKING:
     import pyvista
 
-TYPES = {"triangle": 5, "triangle6": 22, "wedge": 13, "wedge15": 26}
+VTK_TYPES = {"triangle": 5, "triangle6": 22, "wedge": 13, "wedge15": 26}
 # A message of the modification time in an object header of HDF5: type, size, flags, version, and the seconds.
 _STAMP = re.compile(rb"(\x12\x00\x08\x00.\x00\x00\x00\x01\x00\x00\x00)(....)", re.DOTALL)
 
@@ -37,7 +38,7 @@ def to_grid(made: Cells, *, texts: bool = True) -> pyvista.UnstructuredGrid:
 
     Examples
     --------
-    >>> from img2tri.views.objects.cells import flat_cells
+    >>> from img2tri.views.objects.solver_cells import flat_cells
     >>> grid = to_grid(flat_cells([[0, 0], [1, 0], [0, 1]], [[0, 1, 2]], [7], bounds=(0, 0, 9, 9)))
     >>> grid.field_data["left"].tolist(), grid.field_data["region_7"].tolist()
     ([[2, 0]], [7])
@@ -58,12 +59,12 @@ def grid_of(
     """Make a `pyvista.UnstructuredGrid` of cells, with their regions, the names of these, and the nodes of named facets."""
     import pyvista
 
-    grid = pyvista.UnstructuredGrid({TYPES[kind]: cells}, points)
+    grid = pyvista.UnstructuredGrid({VTK_TYPES[kind]: cells}, points)
     grid.cell_data["region"] = regions.astype(np.int32)
     for label, name in names.items():
-        grid.field_data[plain(name)] = np.array([label])
+        grid.field_data[array_name(name)] = np.array([label])
     for name, nodes in facets.items():
-        grid.field_data[plain(name)] = nodes
+        grid.field_data[array_name(name)] = nodes
     return grid
 
 
@@ -75,17 +76,7 @@ def vtu(made: Cells) -> dict[str, bytes]:
     dict
         The bytes of the file, under "".
     """
-    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
-
-    writer: Any = vtkXMLUnstructuredGridWriter()
-    writer.SetInputData(to_grid(made, texts=False))
-    writer.SetWriteToOutputString(True)
-    writer.SetDataModeToBinary()
-    _checked(writer.Write())
-    # Two hyphens would end the comment; so written, they are the same text to a JSON reader.
-    notes = ["<!-- {} -->\n".format(f"{name}: {text}".replace("--", "-\\u002d")) for name, text in made.texts.items()]
-    head, rest = str(writer.GetOutputString()).split("\n", 1)
-    return {"": f"{head}\n{''.join(notes)}{rest}".encode()}
+    return {"": vtu_of_grid(to_grid(made, texts=False), made.texts)}
 
 
 def vtkhdf(made: Cells) -> dict[str, bytes]:
@@ -105,7 +96,8 @@ def vtkhdf(made: Cells) -> dict[str, bytes]:
         writer.SetInputData(to_grid(made))
         writer.SetFileName(str(path))
         writer.SetChunkSize(min(25000, max(len(made.points), made.cells.size)))  # rows; each array takes whole chunks
-        _checked(writer.Write())
+        if not writer.Write():
+            raise FileError("VTK could not write the mesh, and does not say why")
         data = path.read_bytes()
     times = range(begun - 1, int(time.time()) + 2)
 
@@ -115,11 +107,6 @@ def vtkhdf(made: Cells) -> dict[str, bytes]:
     return {"": _STAMP.sub(without, data)}
 
 
-def plain(name: str) -> str:
+def array_name(name: str) -> str:
     """Make a name one that VTK can write as that of an array."""
     return re.sub(r"[^\w .,()+-]", "_", name)
-
-
-def _checked(written: int) -> None:
-    if not written:
-        raise FileError("VTK could not write the mesh, and does not say why")

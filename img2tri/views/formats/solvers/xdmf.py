@@ -27,12 +27,13 @@ from numpy.typing import NDArray
 
 from img2tri.types import Floats, Ints
 from img2tri.views.formats.stl_ply_obj_off import rows
-from img2tri.views.objects.cells import Z_MAX, Z_MIN, Cells
+from img2tri.views.formats.vtp_vtu import xml_comments
+from img2tri.views.objects.solver_cells import Z_MAX, Z_MIN, Cells
 
-_TYPES = {"triangle": "Triangle", "triangle6": "Triangle_6", "wedge": "Wedge", "wedge15": "Wedge_15"}
-_FACETS = {2: "Polyline", 3: "Edge_3", 4: "Quadrilateral", 8: "Quadrilateral_8"}
-_ENDS = {3: "Triangle", 6: "Triangle_6"}
-FACETS, ENDS = "_facets", "_ends"
+_TOPOLOGIES = {"triangle": "Triangle", "triangle6": "Triangle_6", "wedge": "Wedge", "wedge15": "Wedge_15"}
+_FACET_TOPOLOGIES = {2: "Polyline", 3: "Edge_3", 4: "Quadrilateral", 8: "Quadrilateral_8"}
+_END_TOPOLOGIES = {3: "Triangle", 6: "Triangle_6"}
+FACETS_FILE, ENDS_FILE = "_facets", "_ends"
 
 _GRID = """<?xml version="1.0" encoding="UTF-8"?>
 {notes}<Xdmf Version="3.0"><Domain><Grid Name="Grid" GridType="Uniform">
@@ -69,24 +70,22 @@ def xdmf(made: Cells, *, timed: bool = False) -> dict[str, bytes]:
     """
     points = made.points if made.solid else made.points[:, :2]
     inside = 3 if made.solid else 2
-    # Two hyphens would end the comment; so written, they are the same text to a JSON reader.
-    notes = "".join("<!-- {} -->\n".format(f"{name}: {text}".replace("--", "-\\u002d")) for name, text in made.texts.items())
-    head = (notes, '<Time Value="0"/>\n' if timed else "", points)
+    head = (xml_comments(made.texts), '<Time Value="0"/>\n' if timed else "", points)
     ids = {name: made.ids[label] for label, name in made.names.items()}
     labels, which = np.unique(made.regions, return_inverse=True)
     numbers = np.array([made.ids[label] for label in labels.tolist()])[which]
-    files = {"": _grid(*head, _TYPES[made.kind], made.cells, "region", numbers, ids, inside)}
-    for ending, types, ends in ((FACETS, _FACETS, False), (ENDS, _ENDS, True)):
+    files = {"": _grid_file(*head, _TOPOLOGIES[made.kind], made.cells, "region", numbers, ids, inside)}
+    for ending, types, ends in ((FACETS_FILE, _FACET_TOPOLOGIES, False), (ENDS_FILE, _END_TOPOLOGIES, True)):
         names = [name for name in made.sides if (name in (Z_MIN, Z_MAX) and made.solid) == ends]
         if names:
             facets = [made.facets(name) for name in names]
             tags = {name: made.tags[name] for name in names}
             values = np.repeat(list(tags.values()), list(map(len, facets)))
-            files[ending] = _grid(*head, types[facets[0].shape[1]], np.concatenate(facets), "boundary", values, tags, inside - 1)
+            files[ending] = _grid_file(*head, types[facets[0].shape[1]], np.concatenate(facets), "boundary", values, tags, inside - 1)
     return files
 
 
-def _grid(
+def _grid_file(
     notes: str, time: str, points: Floats, kind: str, cells: Ints, name: str, values: Ints, names: Mapping[str, int], dimension: int
 ) -> bytes:
     maps = "".join(f'<map key={quoteattr(key)} dim="{dimension}">{value}</map>' for key, value in names.items())

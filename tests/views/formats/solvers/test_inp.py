@@ -14,7 +14,7 @@ from views.solver_meshes import BOUNDS, HEIGHT, KINDS, TEXTS, made, plate, progr
 
 from img2tri import MeshError, ParameterError
 from img2tri.views.formats.solvers.inp import inp
-from img2tri.views.objects.cells import flat_cells
+from img2tri.views.objects.solver_cells import flat_cells
 
 tools = pytest.mark.tools
 ELEMENTS = {"triangle": "CPS3", "triangle6": "CPS6", "wedge": "C3D6", "wedge15": "C3D15"}

@@ -11,7 +11,7 @@ from views.solver_meshes import KINDS, made, plate
 
 from img2tri import MeshError
 from img2tri.views.formats.solvers.vtu_vtkhdf import to_grid
-from img2tri.views.plugin.datasets import from_dataset, image_frame, written_about
+from img2tri.views.plugin.dataset_to_cells import from_dataset, image_frame, written_about
 
 ABOUT = {"names": {"4": "bone"}, "frame": {"shape": [5, 6], "spacing": [0.3, 0.3], "corner": [-0.7, 0.1], "upward": True}}
 

@@ -2,7 +2,7 @@ r"""What every format for solvers starts from: a mesh in space made of cells of 
 
 Triangles or wedges, linear or quadratic, with their nodes in the order of VTK. A set of edges of the plane mesh is a set of *facets* here:
 the edges themselves, or the walls above them; solids have the sets ``z_min`` and ``z_max`` besides. A facet is a side of a cell. Sides 0, 1
-and 2 stand on the sides of the triangle, see `img2tri.views.objects.edges`; wedges have the bottom as side 3 and the top as side 4::
+and 2 stand on the sides of the triangle, see `img2tri.arrays.unique_edges`; wedges have the bottom as side 3 and the top as side 4::
 
         2                        5
        / \                      /|\
@@ -23,11 +23,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from img2tri.errors import MeshError
 from img2tri.types import Floats, Ints
+from img2tri.views.objects.flat_or_extruded import surface
 from img2tri.views.objects.named_sets import named_sets
-from img2tri.views.objects.surface import surface
 
 # The nodes of each side of each kind, corners first.
-SIDES: dict[str, tuple[tuple[int, ...], ...]] = {
+CELL_SIDES: dict[str, tuple[tuple[int, ...], ...]] = {
     "triangle": ((0, 1), (1, 2), (2, 0)),
     "triangle6": ((0, 1, 3), (1, 2, 4), (2, 0, 5)),
     "wedge": ((0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5), (0, 2, 1), (3, 4, 5)),
@@ -35,8 +35,8 @@ SIDES: dict[str, tuple[tuple[int, ...], ...]] = {
         (0, 1, 4, 3, 6, 13, 9, 12), (1, 2, 5, 4, 7, 14, 10, 13), (2, 0, 3, 5, 8, 12, 11, 14), (0, 2, 1, 8, 7, 6), (3, 4, 5, 9, 10, 11),
     ),
 }  # fmt: skip
-FLAT = {3: "triangle", 6: "triangle6"}
-SOLID = {6: "wedge", 15: "wedge15"}
+FLAT_KINDS = {3: "triangle", 6: "triangle6"}
+SOLID_KINDS = {6: "wedge", 15: "wedge15"}
 Z_MIN, Z_MAX = "z_min", "z_max"
 
 
@@ -94,7 +94,7 @@ class Cells:
         """Return the nodes (k, 2 to 8) of the facets of a set, row for row as in `sides`; corners first."""
         cell, side = self.sides[name].T
         first = 3 * (side.min() // 3)  # walls and ends of solids differ in their number of nodes; no set holds both
-        local = np.array(SIDES[self.kind][first : first + 3])[side - first]
+        local = np.array(CELL_SIDES[self.kind][first : first + 3])[side - first]
         return np.asarray(self.cells[cell[:, None], local])
 
 
@@ -119,7 +119,7 @@ def flat_cells(
         (m, 3) int64, counter-clockwise triangles, or (m, 6): these, then the nodes between 0 and 1, 1 and 2, 2 and 0, see
         `img2tri.views.objects.wedges.quadratic`.
     regions, z, cell_data, field_data
-        As in `img2tri.views.objects.surface.surface`.
+        As in `img2tri.views.objects.flat_or_extruded.surface`.
     names, bounds
         As in `img2tri.views.objects.named_sets.named_sets`.
 
@@ -135,7 +135,7 @@ def flat_cells(
     ('triangle', ['left', 'bottom', 'top', 'outer', 'region_-1__region_4'], [[3, 0]], {-1: 5, 4: 4})
     """
     nodes = np.asarray(elements)
-    if nodes.ndim != 2 or nodes.shape[1] not in FLAT:
+    if nodes.ndim != 2 or nodes.shape[1] not in FLAT_KINDS:
         raise MeshError(f"elements: expected rows of 3 or 6 nodes, found shape {nodes.shape}")
     made = surface(points, nodes[:, :3], regions, z=z, cell_data=cell_data, field_data=field_data)
     if nodes.max() >= len(made.points) or nodes.min() < 0:
@@ -143,8 +143,9 @@ def flat_cells(
     labels = made.regions.astype(np.int64)
     sets = named_sets(made.points[:, :2], made.faces, labels, bounds=bounds, names=names)
     called = {label: name for name, label in sets.labels.items()}
+    kind = FLAT_KINDS[nodes.shape[1]]
     return Cells(
-        made.points, nodes.astype(np.int64), FLAT[nodes.shape[1]], labels, called, sets.sides, sets.tags, made.cell_data, made.field_data,
+        made.points, nodes.astype(np.int64), kind, labels, called, sets.sides, sets.tags, made.cell_data, made.field_data
     )  # fmt: skip
 
 
@@ -177,7 +178,7 @@ def solid_cells(flat: Cells, points: Floats, cells: Ints) -> Cells:
     ({'outer': 6, 'z_min': 1, 'z_max': 1}, {'outer': 5, 'z_min': 6, 'z_max': 7})
     """
     m, layers = len(flat.cells), len(cells) // len(flat.cells)
-    if len(cells) != layers * m or cells.shape[1] not in SOLID:
+    if len(cells) != layers * m or cells.shape[1] not in SOLID_KINDS:
         raise MeshError(f"cells: expected wedges of 6 or 15 nodes, {m} in each layer, found shape {cells.shape}")
     above = m * np.arange(layers)
     sides = {
@@ -187,6 +188,6 @@ def solid_cells(flat: Cells, points: Floats, cells: Ints) -> Cells:
     sides[Z_MIN] = np.stack([every, np.full(m, 3)], axis=1)
     sides[Z_MAX] = np.stack([every + above[-1], np.full(m, 4)], axis=1)
     return replace(
-        flat, points=points, cells=cells, kind=SOLID[cells.shape[1]], regions=np.tile(flat.regions, layers), sides=sides,
+        flat, points=points, cells=cells, kind=SOLID_KINDS[cells.shape[1]], regions=np.tile(flat.regions, layers), sides=sides,
         tags=flat.tags | {Z_MIN: last + 1, Z_MAX: last + 2}, cell_data={name: np.tile(v, layers) for name, v in flat.cell_data.items()},
     )  # fmt: skip

@@ -26,7 +26,7 @@ from img2tri.views.formats.solvers.inp import inp
 from img2tri.views.formats.solvers.msh import msh
 from img2tri.views.formats.solvers.vtu_vtkhdf import vtkhdf, vtu
 from img2tri.views.formats.solvers.xdmf import xdmf
-from img2tri.views.objects.cells import Cells
+from img2tri.views.objects.solver_cells import Cells
 
 
 class Export(NamedTuple):
@@ -64,7 +64,7 @@ def export(
     path
         Where to write: .msh, .inp, .bdf, .xdmf, .vtu or .vtkhdf. Beside ``femur.xdmf``, ``femur_facets.xdmf`` is written too.
     made
-        The mesh, see `img2tri.views.objects.cells`.
+        The mesh, see `img2tri.views.objects.solver_cells`.
     version
         Of .msh: "4.1", which is the default, or "2.2".
     deck
@@ -83,7 +83,7 @@ def export(
 
     Examples
     --------
-    >>> from img2tri.views.objects.cells import flat_cells
+    >>> from img2tri.views.objects.solver_cells import flat_cells
     >>> export("plate.bdf", flat_cells([[0, 0], [1, 0], [0, 1]], [[0, 1, 2]]), deck=True)
     Traceback (most recent call last):
     ...

@@ -9,7 +9,7 @@ from views.solver_meshes import KINDS, TAGS, TEXTS, gmsh, made, sizes
 
 from img2tri import MeshError
 from img2tri.views.formats.solvers.bdf import bdf
-from img2tri.views.formats.solvers.read_msh_bdf import read_bdf
+from img2tri.views.formats.solvers.read_msh_bdf import parse_bdf
 
 IDS = {"region_-1": 5, "bone": 4}
 tools = pytest.mark.tools
@@ -48,7 +48,7 @@ def test_pynastran_finds_elements_sets_and_names(tmp_path, monkeypatch, kind):
     reader = pytest.importorskip("pyNastran.bdf.bdf", reason="pyNastran is not installed")
     mesh = made(kind)
     (tmp_path / "a.bdf").write_bytes(bdf(mesh)[""])
-    model = reader.read_bdf(str(tmp_path / "a.bdf"), xref=False, validate=False, debug=None)
+    model = reader.parse_bdf(str(tmp_path / "a.bdf"), xref=False, validate=False, debug=None)
     assert len(model.nodes) == len(mesh.points)
     places = np.array([model.nodes[i + 1].xyz for i in range(len(mesh.points))])
     assert places == pytest.approx(mesh.points, rel=1e-9)
@@ -82,7 +82,7 @@ def test_gmsh_finds_regions_of_their_sizes(tmp_path, kind):
 @pytest.mark.parametrize("kind", KINDS)
 def test_our_own_reader_finds_everything_in_its_order(kind):
     mesh = made(kind)
-    found = read_bdf(bdf(mesh)[""])
+    found = parse_bdf(bdf(mesh)[""])
     assert found.points == pytest.approx(mesh.points, rel=1e-9)
     assert np.array_equal(found.cells, mesh.cells)
     assert (found.kind, found.names) == (kind, mesh.names)
@@ -114,7 +114,7 @@ ENDDATA
 
 
 def test_files_of_others_are_read_free_small_and_large():
-    found = read_bdf(FOREIGN.encode())
+    found = parse_bdf(FOREIGN.encode())
     assert found.points.tolist() == [[0, 0, 0], [1.5, -0.25, 0], [1.5, 1, 0]]
     assert found.cells.tolist() == [[0, 1, 2]]
     assert (found.regions.tolist(), found.names, found.facets) == ([1], {}, {})
@@ -133,4 +133,4 @@ def test_files_of_others_are_read_free_small_and_large():
 )
 def test_what_is_no_bdf_of_triangles_or_wedges_is_refused(text, kind):
     with pytest.raises(kind):
-        read_bdf(text.encode())
+        parse_bdf(text.encode())

@@ -46,7 +46,7 @@ def by_xml(data: bytes, _suffix: str) -> tuple[NDArray[Any], NDArray[Any], NDArr
     points, triangles, regions, count = [], [], [], 0
     for piece in root.iter("Piece"):
         points.append(coding.array(piece.find("Points/DataArray")).reshape(-1, 3))
-        corners, rows = _triangles(piece, coding)
+        corners, rows = _piece_triangles(piece, coding)
         triangles.append(corners + count)
         count += len(points[-1])
         array = piece.find("CellData/DataArray[@Name='region']")
@@ -55,7 +55,7 @@ def by_xml(data: bytes, _suffix: str) -> tuple[NDArray[Any], NDArray[Any], NDArr
     return np.concatenate(points), np.concatenate(triangles), np.concatenate(labels) if len(labels) == len(regions) else None
 
 
-def _triangles(piece: ElementTree.Element, coding: _Coding) -> tuple[NDArray[Any], NDArray[Any]]:
+def _piece_triangles(piece: ElementTree.Element, coding: _Coding) -> tuple[NDArray[Any], NDArray[Any]]:
     """Return the corners (k, 3) of the triangles of a piece, and the rows (k,) they have in its cell arrays."""
     grid = piece.find("Cells")
     cells = {array.get("Name"): coding.array(array) for array in piece.iterfind(f"{'Polys' if grid is None else 'Cells'}/DataArray")}

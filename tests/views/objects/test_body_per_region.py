@@ -12,7 +12,7 @@ from oracles import areas
 from views.plates import STRIP_AREA, cells, is_closed, strip, volume
 
 from img2tri.errors import MeshError, ParameterError
-from img2tri.views.objects.bodies import bodies, to_scene, unique_names
+from img2tri.views.objects.body_per_region import bodies, to_scene, unique_names
 
 
 def quarters():

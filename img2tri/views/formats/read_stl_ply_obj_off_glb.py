@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from img2tri.views.objects.surface import places
+from img2tri.views.objects.flat_or_extruded import coincident_points
 
 if TYPE_CHECKING:
     import trimesh
@@ -34,17 +34,17 @@ def by_trimesh(data: bytes, suffix: str) -> tuple[NDArray[Any], NDArray[Any], ND
         if isinstance(part, trimesh.Trimesh):
             points.append(trimesh.transform_points(part.vertices, matrix))
             faces.append(np.asarray(part.faces) + count)
-            regions.append(_regions(str(name), part))
+            regions.append(_face_regions(str(name), part))
             count += len(points[-1])
     corners, joined = np.concatenate(points), np.concatenate(faces)
     if suffix == ".stl" or len(regions) > 1:
-        place = places(corners)
+        place = coincident_points(corners)
         corners, joined = corners[np.unique(place, return_index=True)[1]], place[joined]
     labels = [part for part in regions if part is not None]
     return corners, joined, np.concatenate(labels) if labels and len(labels) == len(regions) else None
 
 
-def _regions(name: str, part: trimesh.Trimesh) -> NDArray[Any] | None:
+def _face_regions(name: str, part: trimesh.Trimesh) -> NDArray[Any] | None:
     """Return the region of each face of a part, or None if it says nothing of regions."""
     faces = part.metadata.get("_ply_raw", {}).get("face", {}).get("data")
     names = faces.dtype.names if isinstance(faces, np.ndarray) else faces

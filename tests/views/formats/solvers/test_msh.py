@@ -9,8 +9,8 @@ from views.solver_meshes import KINDS, TAGS, TEXTS, gmsh, made, plate, sizes
 
 from img2tri import MeshError, ParameterError
 from img2tri.views.formats.solvers.msh import msh
-from img2tri.views.formats.solvers.read_msh_bdf import read_msh
-from img2tri.views.objects.cells import flat_cells
+from img2tri.views.formats.solvers.read_msh_bdf import parse_msh
+from img2tri.views.objects.solver_cells import flat_cells
 
 VERSIONS = ("4.1", "2.2")
 IDS = {"region_-1": 5, "bone": 4}
@@ -100,7 +100,7 @@ def test_meshio_finds_cells_groups_and_names(tmp_path, kind, version):
 @pytest.mark.parametrize("kind", KINDS)
 def test_our_own_reader_finds_everything_in_its_order(kind, version):
     mesh = made(kind)
-    found = read_msh(msh(mesh, version=version)[""])
+    found = parse_msh(msh(mesh, version=version)[""])
     assert np.array_equal(found.points, mesh.points)
     assert np.array_equal(found.cells, mesh.cells)
     assert (found.kind, found.names) == (kind, mesh.names)
@@ -128,12 +128,12 @@ def test_the_version_changes_the_file_and_another_is_refused():
 def test_quotes_in_names_do_not_end_them():
     vertices, triangles, regions = plate()
     data = msh(flat_cells(vertices, triangles, regions, names={4: 'the "hard"\nbone é'}))[""]
-    assert read_msh(data).names[4] == "the 'hard' bone é"
+    assert parse_msh(data).names[4] == "the 'hard' bone é"
 
 
 def test_a_name_that_holds_a_label_is_read_as_that_label():
     vertices, triangles, regions = plate()
-    found = read_msh(msh(flat_cells(vertices, triangles, np.where(regions == 4, 0, -7)))[""])
+    found = parse_msh(msh(flat_cells(vertices, triangles, np.where(regions == 4, 0, -7)))[""])
     assert sorted(set(found.regions.tolist())) == [-7, 0]
 
 
@@ -173,7 +173,7 @@ $EndElements
 
 
 def test_files_of_others_are_read_with_gaps_in_the_numbers_parameters_and_no_groups():
-    found = read_msh(FOREIGN.encode())
+    found = parse_msh(FOREIGN.encode())
     assert found.points.tolist() == [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]
     assert found.cells.tolist() == [[0, 1, 3], [0, 3, 2]]
     assert (found.regions.tolist(), found.names, found.facets) == ([0, 0], {}, {})
@@ -194,4 +194,4 @@ def test_files_of_others_are_read_with_gaps_in_the_numbers_parameters_and_no_gro
 )
 def test_what_is_no_msh_of_triangles_or_wedges_is_refused(data, kind):
     with pytest.raises(kind):
-        read_msh(data)
+        parse_msh(data)

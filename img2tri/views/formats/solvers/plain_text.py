@@ -1,4 +1,4 @@
-"""What the formats in plain text have in common: numbers in columns, numbers in rows, notes, names.
+"""What the formats in plain text have in common: numbers in columns, numbers in rows, comments, names.
 
 Numbers are written with the fewest digits that give the same float64 again, unless a format has no room for them.
 """
@@ -44,12 +44,12 @@ def in_lines(words: Sequence[object], each: int, between: str = ", ") -> list[st
     return [between.join(texts[i : i + each]) for i in range(0, len(words), each)]
 
 
-def fitted(number: float, width: int) -> str:
+def fitted_number(number: float, width: int) -> str:
     """Write a number with a decimal point in at most `width` characters: all its digits, or as many as there is room for.
 
     Examples
     --------
-    >>> fitted(0.1, 16), fitted(-1 / 3, 16), fitted(1e-7, 16), fitted(-1.23456789012345e-100, 16)
+    >>> fitted_number(0.1, 16), fitted_number(-1 / 3, 16), fitted_number(1e-7, 16), fitted_number(-1.23456789012345e-100, 16)
     ('0.1', '-0.3333333333333', '1.E-07', '-1.23456789E-100')
     """
     text, digits = repr(number), 17
@@ -62,12 +62,12 @@ def fitted(number: float, width: int) -> str:
     return text.upper()
 
 
-def notes(texts: Mapping[str, str], mark: str) -> list[str]:
+def comment_lines(texts: Mapping[str, str], mark: str) -> list[str]:
     """Write texts as comments: `mark`, name and text; long ones go on in further lines, behind three spaces.
 
     Examples
     --------
-    >>> notes({"units": "mm"}, "** ")
+    >>> comment_lines({"units": "mm"}, "** ")
     ['** units: mm']
     """
     lines = []

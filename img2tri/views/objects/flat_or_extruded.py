@@ -127,12 +127,12 @@ def plane_mesh(vertices: ArrayLike, triangles: ArrayLike) -> tuple[Floats, Ints]
     return v, t.astype(np.int64, copy=False)
 
 
-def places(points: NDArray[Any]) -> Ints:
+def coincident_points(points: NDArray[Any]) -> Ints:
     """Give each of the points (p, 3) a number, (p,) int64; points with the same coordinates get the same.
 
     Examples
     --------
-    >>> places(np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])).tolist()
+    >>> coincident_points(np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])).tolist()
     [1, 0, 1]
     """
     order = np.lexsort(points.T)

@@ -1,4 +1,4 @@
-"""Objects of pyvista -> `img2tri.views.objects.cells.Cells`, so that whatever is in hand there can be written for solvers.
+"""Objects of pyvista -> `img2tri.views.objects.solver_cells.Cells`, so that whatever is in hand there can be written for solvers.
 
 Regions are the cell array ``region``. What is known besides is taken from the field data: names of regions (an integer each, the label),
 sets of facets (their nodes), and the text ``img2tri`` with names and the frame of the image. Sets of facets are taken over if each facet is
@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 
 from img2tri.errors import MeshError
 from img2tri.types import Floats, Frame, Ints
-from img2tri.views.formats.solvers.vtu_vtkhdf import TYPES
-from img2tri.views.objects.cells import SIDES, Cells, flat_cells, solid_cells
+from img2tri.views.formats.solvers.vtu_vtkhdf import VTK_TYPES
 from img2tri.views.objects.named_sets import FRAME, OUTER, region_names
+from img2tri.views.objects.solver_cells import CELL_SIDES, Cells, flat_cells, solid_cells
 
 
 def from_dataset(dataset: Any) -> Cells:
@@ -62,8 +62,11 @@ def from_dataset(dataset: Any) -> Cells:
     whole = {name: values for name, values in fields.items() if values.dtype.kind in "iu"}
     names |= {int(values[0]): name for name, values in whole.items() if values.shape == (1,) and values[0] in regions}
     options: dict[str, Any] = {"names": names, "bounds": frame.bounds if frame else None, "field_data": texts}
-    made = _flat(points, cells, regions, options) if kind.startswith("triangle") else _solid(points, cells, kind, regions, options)
-    widths = {len(side) for side in SIDES[kind]}
+    if kind.startswith("triangle"):
+        made = _flat_mesh(points, cells, regions, options)
+    else:
+        made = _layered_solid(points, cells, kind, regions, options)
+    widths = {len(side) for side in CELL_SIDES[kind]}
     facets = {name: values for name, values in whole.items() if values.ndim == 2 and values.shape[1] in widths}
     return _with_facets(made, facets) if facets else made
 
@@ -101,7 +104,7 @@ def _arrays(dataset: Any) -> tuple[Floats, Ints, str]:
             raise MeshError(f"expected a PolyData of triangles, found {found}")
         return np.asarray(dataset.points, np.float64), np.asarray(dataset.regular_faces, np.int64), "triangle"
     blocks = {int(number): rows for number, rows in dataset.cells_dict.items()} if hasattr(dataset, "cells_dict") else {}
-    kinds = {number: kind for kind, number in TYPES.items()}
+    kinds = {number: kind for kind, number in VTK_TYPES.items()}
     if len(blocks) != 1 or not set(blocks) <= set(kinds):
         raise MeshError(
             f"expected a PolyData of triangles, or an UnstructuredGrid of triangles or wedges only, found {type(dataset).__name__}"
@@ -111,7 +114,7 @@ def _arrays(dataset: Any) -> tuple[Floats, Ints, str]:
     return np.asarray(dataset.points, np.float64), np.asarray(rows, np.int64), kinds[number]
 
 
-def _flat(points: Floats, cells: Ints, regions: Ints, options: dict[str, Any]) -> Cells:
+def _flat_mesh(points: Floats, cells: Ints, regions: Ints, options: dict[str, Any]) -> Cells:
     z = points[:, 2]
     if not np.ptp(z) <= 1e-6 * np.ptp(points[:, :2], axis=0).max():
         raise MeshError(f"expected triangles in a plane of constant z, found z from {z.min():g} to {z.max():g}")
@@ -122,7 +125,7 @@ def _flat(points: Floats, cells: Ints, regions: Ints, options: dict[str, Any]) -
     return flat_cells(points[:, :2], turned, regions, z=float(z[0]), **options)
 
 
-def _solid(points: Floats, cells: Ints, kind: str, regions: Ints, options: dict[str, Any]) -> Cells:
+def _layered_solid(points: Floats, cells: Ints, kind: str, regions: Ints, options: dict[str, Any]) -> Cells:
     """Find the layers of wedges: as many at the bottom as there are triangles, each other one upon the one before."""
     base, top, z = cells[:, :3], cells[:, 3:6], points[:, 2]
     m = int(np.all(z[base] == z.min(), axis=1).sum())
@@ -145,9 +148,9 @@ def _with_facets(made: Cells, facets: dict[str, NDArray[Any]]) -> Cells:
 def _sides(made: Cells, nodes: NDArray[Any]) -> Ints | None:
     """Return the cell and the side each facet is, the first where two cells have it, or None if one of them is no side."""
     width = nodes.shape[1]
-    numbers = [i for i, side in enumerate(SIDES[made.kind]) if len(side) == width]
+    numbers = [i for i, side in enumerate(CELL_SIDES[made.kind]) if len(side) == width]
     corners = width if made.kind in ("triangle", "wedge") else (width + 1) // 2
-    local = np.array([SIDES[made.kind][i] for i in numbers])[:, :corners]
+    local = np.array([CELL_SIDES[made.kind][i] for i in numbers])[:, :corners]
     own = np.sort(made.cells[:, local].reshape(-1, corners), axis=1)
     each, which = np.unique(np.concatenate([own, np.sort(nodes[:, :corners], axis=1)]), axis=0, return_inverse=True)
     mine, wanted = np.split(which.ravel(), [len(own)])

@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike
 from img2tri.types import Floats, Ints
 from img2tri.views.figures.colours import palette
 from img2tri.views.objects.extrusion import extrude
-from img2tri.views.objects.surface import Surface, surface
+from img2tri.views.objects.flat_or_extruded import Surface, surface
 
 if TYPE_CHECKING:
     import trimesh
@@ -74,7 +74,7 @@ def bodies(
     names
         Label -> name. Regions without one are called "region_3" and so on; a name given twice gets the label behind it.
     vertices, triangles, regions, z, cell_data, field_data
-        As in `img2tri.views.objects.surface.surface`.
+        As in `img2tri.views.objects.flat_or_extruded.surface`.
 
     Returns
     -------
@@ -84,7 +84,7 @@ def bodies(
     Raises
     ------
     MeshError, ParameterError
-        As `img2tri.views.objects.surface.surface`.
+        As `img2tri.views.objects.flat_or_extruded.surface`.
 
     Examples
     --------
@@ -97,7 +97,7 @@ def bodies(
     labels, starts = np.unique(flat.regions[order], return_index=True)
     named = unique_names(labels.tolist(), names or {})
     return [
-        Body(label, named[label], (red, green, blue), _part(flat, mine, height))
+        Body(label, named[label], (red, green, blue), _body_surface(flat, mine, height))
         for label, (red, green, blue), mine in zip(labels.tolist(), palette(len(labels)).tolist(), np.split(order, starts[1:]), strict=True)
     ]
 
@@ -168,7 +168,7 @@ def unique_names(labels: list[int], names: Mapping[int, str]) -> dict[int, str]:
     return unique
 
 
-def _part(flat: Surface, mine: Ints, height: float | None) -> Surface:
+def _body_surface(flat: Surface, mine: Ints, height: float | None) -> Surface:
     """Cut the triangles `mine` out of a flat mesh and give them a thickness."""
     used, inverse = np.unique(flat.faces[mine], return_inverse=True)
     corners = inverse.reshape(-1, 3)

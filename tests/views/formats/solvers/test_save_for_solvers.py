@@ -13,7 +13,7 @@ from views.solver_meshes import KINDS, TEXTS, made
 
 from img2tri.errors import FileError, ParameterError
 from img2tri.views.formats.save_load import load
-from img2tri.views.formats.solvers.solver_files import EXPORTS, export
+from img2tri.views.formats.solvers.save_for_solvers import EXPORTS, export
 
 OPTIONS = {"version": ("2.2", "4.1"), "deck": (True, False), "plane": ("strain", "stress"), "timed": (True, False)}
 
@@ -85,7 +85,7 @@ def test_an_older_file_stays_whole_if_the_disk_refuses(tmp_path, monkeypatch):
 def test_the_same_mesh_gives_the_same_bytes_at_any_time_in_any_process(tmp_path):
     code = """
 from views.solver_meshes import KINDS, made
-from img2tri.views.formats.solvers.solver_files import EXPORTS, export
+from img2tri.views.formats.solvers.save_for_solvers import EXPORTS, export
 for suffix in EXPORTS:
     for kind in KINDS:
         export(f"{folder}/{kind}{suffix}", made(kind))

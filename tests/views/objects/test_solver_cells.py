@@ -7,7 +7,7 @@ import pytest
 from views.solver_meshes import BOUNDS, HEIGHT, KINDS, LAYERS, NAMES, SIZE, TAGS, TEXTS, made, plate, sizes
 
 from img2tri import MeshError
-from img2tri.views.objects.cells import SIDES, flat_cells, solid_cells
+from img2tri.views.objects.solver_cells import CELL_SIDES, flat_cells, solid_cells
 from img2tri.views.objects.wedges import quadratic, wedges
 
 SOLIDS = KINDS[2:]
@@ -78,7 +78,7 @@ def test_layers_have_the_regions_values_and_names_of_the_triangles(kind):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_sides_know_all_nodes_of_a_cell(kind):
-    assert set().union(*SIDES[kind]) == set(range(made(kind).cells.shape[1]))
+    assert set().union(*CELL_SIDES[kind]) == set(range(made(kind).cells.shape[1]))
 
 
 def test_numbers_begin_with_one_and_labels_above_keep_theirs():
