@@ -14,7 +14,7 @@ import specimens
 from img2tri import FileError, MeshError, ParameterError, TriangleMesh, __version__, mesh_image
 from img2tri.types import Frame
 from img2tri.views.formats.save_load import load
-from img2tri.views.formats.solvers.read_msh_bdf import read_msh
+from img2tri.views.formats.solvers.read_msh_bdf import parse_msh
 
 HOLED = specimens.disc(50, 22) - specimens.disc(50, 9, (20.5, 26.0))
 GRAINS = specimens.polycrystal(40, 5)
@@ -324,7 +324,7 @@ def test_a_notebook_shows_counts_and_a_drawing(holed):
 @pytest.mark.parametrize("order", [1, 2])
 def test_a_file_for_solvers_holds_the_elements_asked_for(order, height, grains, tmp_path):
     grains.save(tmp_path / "a.msh", height, order=order, layers=None if height is None else 2)
-    found = read_msh((tmp_path / "a.msh").read_bytes())
+    found = parse_msh((tmp_path / "a.msh").read_bytes())
     kind = {1: ("triangle", "wedge"), 2: ("triangle6", "wedge15")}[order][height is not None]
     layers = 1 if height is None else 2
     assert found.kind == kind
