@@ -25,8 +25,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from img2tri.arrays import Floats, Ints
 from img2tri.errors import FileError, MeshError
-from img2tri.types import Floats, Ints
 from img2tri.views.formats import threemf
 from img2tri.views.formats.atomic_write import known_suffix, store, writable
 from img2tri.views.formats.glb import glb

@@ -26,9 +26,8 @@ from xml.sax.saxutils import escape, quoteattr
 import numpy as np
 from numpy.typing import ArrayLike
 
-from img2tri.arrays import unique_edges
+from img2tri.arrays import Floats, unique_edges
 from img2tri.errors import MeshError
-from img2tri.types import Floats
 from img2tri.views.figures.colours import palette
 from img2tri.views.formats.atomic_write import known_suffix, store, writable
 from img2tri.views.objects.body_per_region import unique_names

@@ -19,7 +19,7 @@ from xml.sax.saxutils import escape, quoteattr
 import numpy as np
 from numpy.typing import NDArray
 
-from img2tri.types import Floats
+from img2tri.arrays import Floats
 from img2tri.views.figures.colours import palette
 from img2tri.views.formats.stl_ply_obj_off import rows
 from img2tri.views.objects.body_per_region import Body

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from img2tri.types import Floats, Ints
+from img2tri.arrays import Floats, Ints
 from img2tri.views.figures.colours import palette
 from img2tri.views.objects.extrusion import extrude
 from img2tri.views.objects.flat_or_extruded import Surface, surface

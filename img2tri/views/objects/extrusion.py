@@ -2,15 +2,16 @@
 
 The bottom is the mesh turned over, the top is the mesh, and every side of a triangle that has no neighbour becomes a wall of two
 triangles. This needs no outline: holes come out as through-holes because their sides have no neighbour either, and interfaces between
-regions make no wall. Side against side is compared by one integer per directed side, so the cost is that of sorting them.
+regions make no wall. The cost is that of sorting the sides.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from img2tri.errors import MeshError, finite
-from img2tri.types import Floats, Ints
+from img2tri.arrays import Floats, Ints
+from img2tri.errors import finite
+from img2tri.views.objects.side_twins import previous_side, side_twins
 
 
 def extrude(vertices: Floats, triangles: Ints, height: float, *, z: float = 0.0) -> tuple[Floats, Ints, Ints]:
@@ -55,8 +56,9 @@ def extrude(vertices: Floats, triangles: Ints, height: float, *, z: float = 0.0)
     ((8, 3), (12, 3), [0, 1, 0, 1, 0, 0, 0, 0, 1, 1, 1, 1])
     """
     height, z = finite("height", height, above=0), finite("z", z)
-    free = _free_sides(triangles, len(vertices))
-    corners, origin = _unpinched(triangles, len(vertices), free)
+    twins = side_twins(triangles, len(vertices))
+    free = np.flatnonzero(twins < 0)
+    corners, origin = _unpinched(triangles, len(vertices), twins)
     n = len(origin)
 
     # Each side that has no neighbour becomes a wall, seen here from outside, where a -> b has the mesh behind it:
@@ -75,25 +77,7 @@ def extrude(vertices: Floats, triangles: Ints, height: float, *, z: float = 0.0)
     return points, faces, np.concatenate([every, every, np.repeat(free // 3, 2)])
 
 
-def _free_sides(triangles: Ints, n: int) -> Ints:
-    """Return the sides without a neighbour, side 3 t + k going from corner k of triangle t to the next; refuse a side that is there twice.
-
-    A directed side is one integer, so a neighbour is the integer of the opposite side.
-    """
-    start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
-    # Sorting, as np.unique and np.isin without options go by hashing, which takes ten times as long here.
-    sides, opposite = np.sort(start * n + end), end * n + start
-    twice = np.count_nonzero(sides[1:] == sides[:-1])
-    if twice:
-        raise MeshError(
-            "triangles: expected each side in at most two triangles, wound alike; "
-            f"found {twice} that run along a side in the same direction as another"
-        )
-    place = np.searchsorted(sides, opposite).clip(max=len(sides) - 1)
-    return np.flatnonzero(sides[place] != opposite)
-
-
-def _unpinched(triangles: Ints, n: int, free: Ints) -> tuple[Ints, Ints]:
+def _unpinched(triangles: Ints, n: int, twins: Ints) -> tuple[Ints, Ints]:
     r"""Split the vertices in which parts of the mesh touch without sharing a side; return the corners and whence each vertex came.
 
     Around such a vertex v the triangles form several fans. One free side of each fan leaves v. From there the fan is walked triangle by
@@ -107,21 +91,14 @@ def _unpinched(triangles: Ints, n: int, free: Ints) -> tuple[Ints, Ints]:
           /    \           another fan: it gets a vertex of its own
         . ------ .
     """
-    start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    start, free = triangles.ravel(), np.flatnonzero(twins < 0)
     leaving = free[np.argsort(start[free], kind="stable")]
     again = np.flatnonzero(np.diff(start[leaving]) == 0) + 1  # all but the first fan of a vertex, which keeps it
     corner, new = leaving[again], n + np.arange(len(again))
     origin = np.concatenate([np.arange(n), start[corner]])
-    if not len(corner):
-        return triangles, origin
-
-    corners, sides = start.copy(), start * n + end
-    order = np.argsort(sides)
+    corners = start.copy()
     while len(corner):
         corners[corner] = new
-        before = corner - corner % 3 + (corner + 2) % 3
-        wanted = start[corner] * n + start[before]
-        place = order[np.searchsorted(sides, wanted, sorter=order).clip(max=len(order) - 1)]
-        found = sides[place] == wanted
-        corner, new = place[found], new[found]
+        following = twins[previous_side(corner)]
+        corner, new = following[following >= 0], new[following >= 0]
     return corners.reshape(-1, 3), origin

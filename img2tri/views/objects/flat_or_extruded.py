@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from img2tri.arrays import Floats, Ints
 from img2tri.errors import MeshError, ParameterError, finite
-from img2tri.types import Floats, Ints
 from img2tri.views.objects.extrusion import extrude
 
 

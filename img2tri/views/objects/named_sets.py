@@ -11,9 +11,8 @@ first of these that fits:
 So no edge is in two sets, as solvers want it that give each facet one tag. The tags are the same in every format, whichever sets there are:
 left 1, right 2, bottom 3, top 4, outer 5, the holes from 6, then the interfaces by their labels.
 
-An edge is a side of a triangle. Sides are numbered by the corner they begin in, as in `img2tri.arrays.unique_edges`, and side 3 t + k is
-side k of triangle t. Its twin is the same edge seen from the other triangle; a boundary ring is followed by going round its vertices from
-twin to twin, so that where a mesh touches itself in one vertex only, its parts stay apart, as they are for the pixels.
+An edge is a side of a triangle, numbered as in `img2tri.views.objects.side_twins`. A boundary ring is followed by going round its vertices
+from twin to twin, so that where a mesh touches itself in one vertex only, its parts stay apart, as they are for the pixels.
 """
 
 from __future__ import annotations
@@ -23,9 +22,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from img2tri.errors import MeshError, ParameterError
-from img2tri.types import Bools, Floats, Ints
+from img2tri.arrays import Bools, Floats, Ints
+from img2tri.errors import ParameterError
 from img2tri.views.objects.body_per_region import unique_names
+from img2tri.views.objects.side_twins import next_side, side_twins
 
 FRAME = ("left", "right", "bottom", "top")
 OUTER = "outer"
@@ -107,7 +107,7 @@ def named_sets(
     ([[2, 0]], 6)
     """
     called = region_names(regions, names)
-    twins = _twins(triangles, len(vertices))
+    twins = side_twins(triangles, len(vertices))
     free = np.flatnonzero(twins < 0)
     start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
     inside = np.flatnonzero(twins >= 0)
@@ -174,12 +174,12 @@ def boundary_rings(vertices: Floats, triangles: Ints, twins: Ints | None = None)
     >>> boundary_rings(np.array([[0, 0], [2, 0], [0, 2.0]]), np.array([[0, 1, 2]]))
     (array([0, 1, 2]), array([0, 0, 0]), array([2.]))
     """
-    twins = _twins(triangles, len(vertices)) if twins is None else twins
+    twins = side_twins(triangles, len(vertices)) if twins is None else twins
     free = np.flatnonzero(twins < 0)
-    following = _after(free)
+    following = next_side(free)
     turning = np.flatnonzero(twins[following] >= 0)
     while len(turning):
-        following[turning] = _after(twins[following[turning]])
+        following[turning] = next_side(twins[following[turning]])
         turning = turning[twins[following[turning]] >= 0]
     # Each side looks one, two, four... sides ahead for the lowest number, until it has seen the whole ring.
     step, lowest = np.searchsorted(free, following), np.arange(len(free))
@@ -187,31 +187,9 @@ def boundary_rings(vertices: Floats, triangles: Ints, twins: Ints | None = None)
         lowest = np.minimum(lowest, lowest[step])
         step = step[step]
     ring = np.unique(lowest, return_inverse=True)[1]
-    a, b = (vertices[:, :2] - vertices[0, :2])[np.stack([triangles.ravel()[free], triangles.ravel()[_after(free)]])]
+    a, b = (vertices[:, :2] - vertices[0, :2])[np.stack([triangles.ravel()[free], triangles.ravel()[next_side(free)]])]
     area = np.bincount(ring, (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2).astype(np.float64)
     return free.astype(np.int64), ring.astype(np.int64), area
-
-
-def _after(sides: Ints) -> Ints:
-    """Return the next side of the same triangle: it begins where `sides` end."""
-    return sides - sides % 3 + (sides + 1) % 3
-
-
-def _twins(triangles: Ints, n: int) -> Ints:
-    """Return for each side the one that runs the other way, or -1; refuse a side that is there twice."""
-    start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
-    key = start * n + end
-    order = np.argsort(key, kind="stable")
-    ordered = key[order]
-    twice = np.count_nonzero(ordered[1:] == ordered[:-1])
-    if twice:
-        raise MeshError(
-            "triangles: expected each side in at most two triangles, wound alike; "
-            f"found {twice} that run along a side in the same direction as another"
-        )
-    opposite = end * n + start
-    place = np.searchsorted(ordered, opposite).clip(max=len(key) - 1)
-    return np.where(ordered[place] == opposite, order[place], -1)
 
 
 def _on_frame(vertices: Floats, start: Ints, end: Ints, bounds: tuple[float, float, float, float] | None) -> list[Bools]:

@@ -21,8 +21,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from img2tri.arrays import Floats, Ints
 from img2tri.errors import MeshError
-from img2tri.types import Floats, Ints
 from img2tri.views.objects.flat_or_extruded import surface
 from img2tri.views.objects.named_sets import named_sets
 

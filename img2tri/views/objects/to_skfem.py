@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from img2tri.arrays import Floats, Ints
 from img2tri.errors import FileError
-from img2tri.types import Floats, Ints
 from img2tri.views.objects.named_sets import Sets
 
 if TYPE_CHECKING:

@@ -21,9 +21,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from img2tri.arrays import unique_edges
+from img2tri.arrays import Floats, Ints, unique_edges
 from img2tri.errors import MeshError, ParameterError, finite, integer
-from img2tri.types import Floats, Ints
 from img2tri.views.objects.flat_or_extruded import per_triangle, plane_mesh
 
 

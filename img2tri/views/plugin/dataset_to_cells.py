@@ -15,8 +15,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from img2tri.arrays import Floats, Ints
 from img2tri.errors import MeshError
-from img2tri.types import Floats, Frame, Ints
+from img2tri.types import Frame
 from img2tri.views.formats.solvers.vtu_vtkhdf import VTK_TYPES
 from img2tri.views.objects.named_sets import FRAME, OUTER, region_names
 from img2tri.views.objects.solver_cells import CELL_SIDES, Cells, flat_cells, solid_cells

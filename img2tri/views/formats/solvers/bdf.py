@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from img2tri.types import Floats
+from img2tri.arrays import Floats
 from img2tri.views.formats.solvers.plain_text import MARK, comment_lines, fitted_number, in_lines, numbered
 from img2tri.views.objects.solver_cells import Cells
 

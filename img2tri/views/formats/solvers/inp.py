@@ -17,8 +17,8 @@ from itertools import chain
 
 import numpy as np
 
+from img2tri.arrays import Bools, Floats
 from img2tri.errors import MeshError, choice
-from img2tri.types import Bools, Floats
 from img2tri.views.formats.solvers.plain_text import MARK, comment_lines, fitted_number, identifiers, in_lines, numbered
 from img2tri.views.objects.named_sets import boundary_rings
 from img2tri.views.objects.solver_cells import Z_MIN, Cells

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from img2tri.arrays import Floats, Ints
 from img2tri.errors import ParameterError
-from img2tri.types import Floats, Ints
 from img2tri.views.formats.solvers.plain_text import MARK, comment_lines, numbered
 from img2tri.views.formats.stl_ply_obj_off import rows
 from img2tri.views.objects.solver_cells import Cells

@@ -12,8 +12,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from img2tri.arrays import Ints
 from img2tri.errors import MeshError
-from img2tri.types import Ints
 from img2tri.views.formats.solvers.read_msh_bdf import Found
 from img2tri.views.objects.solver_cells import CELL_SIDES, FLAT_KINDS, SOLID_KINDS
 

@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from img2tri.arrays import Floats, Ints
 from img2tri.errors import MeshError
-from img2tri.types import Floats, Ints
 from img2tri.views.formats.solvers import bdf, msh
 
 # Number of nodes of each of Gmsh's types of element.

@@ -20,8 +20,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from img2tri.arrays import Floats, Ints
 from img2tri.errors import FileError
-from img2tri.types import Floats, Ints
 from img2tri.views.formats.vtp_vtu import vtu_of_grid
 from img2tri.views.objects.solver_cells import Cells
 

@@ -25,7 +25,7 @@ from xml.sax.saxutils import escape, quoteattr
 import numpy as np
 from numpy.typing import NDArray
 
-from img2tri.types import Floats, Ints
+from img2tri.arrays import Floats, Ints
 from img2tri.views.formats.stl_ply_obj_off import rows
 from img2tri.views.formats.vtp_vtu import xml_comments
 from img2tri.views.objects.solver_cells import Z_MAX, Z_MIN, Cells

@@ -1,0 +1,67 @@
+r"""The neighbours of the sides of a triangle mesh: triangles -> for each side its twin, the same edge as the other triangle has it.
+
+Side 3 t + k is side k of triangle t, from corner k to the next. A directed side is one integer, so its twin is the integer of the
+opposite side; all are found by one sort::
+
+        c
+       /|\
+      / | \       side b -> c of the triangle on the left and side c -> b of the one on the right are twins
+     /  |  \
+    a   |   d
+     \  |  /
+      \ | /
+       \|/
+        b
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from img2tri.arrays import Ints
+from img2tri.errors import MeshError
+
+
+def side_twins(triangles: Ints, n: int) -> Ints:
+    """Return for each side (3 m,) the one that runs the other way, or -1 where the mesh ends.
+
+    Parameters
+    ----------
+    triangles
+        (m, 3) int64, wound alike.
+    n
+        Number of vertices.
+
+    Raises
+    ------
+    MeshError
+        If two triangles run along a side in the same direction, so that no inside can be told from an outside.
+
+    Examples
+    --------
+    >>> side_twins(np.array([[0, 1, 2], [0, 2, 3]]), 4).tolist()
+    [-1, -1, 3, 2, -1, -1]
+    """
+    start, end = triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
+    key = start * n + end
+    order = np.argsort(key, kind="stable")
+    ordered = key[order]
+    twice = np.count_nonzero(ordered[1:] == ordered[:-1])
+    if twice:
+        raise MeshError(
+            "triangles: expected each side in at most two triangles, wound alike; "
+            f"found {twice} that run along a side in the same direction as another"
+        )
+    opposite = end * n + start
+    place = np.searchsorted(ordered, opposite).clip(max=len(key) - 1)
+    return np.where(ordered[place] == opposite, order[place], -1)
+
+
+def next_side(sides: Ints) -> Ints:
+    """Return the next side of the same triangle: it begins where `sides` end."""
+    return sides - sides % 3 + (sides + 1) % 3
+
+
+def previous_side(sides: Ints) -> Ints:
+    """Return the side of the same triangle that ends where `sides` begin."""
+    return sides - sides % 3 + (sides + 2) % 3
