@@ -4,6 +4,7 @@ Everything a user can cause is an ``Img2triError``; each child is also the built
 
     Img2triError
     ├── ParameterError (ValueError)   an option has a value it cannot have
+    │   └── UnknownOptionError (TypeError)   there is no option of that name
     ├── ImageError     (ValueError)   the image cannot be meshed as it is
     ├── FileError      (OSError)      a file cannot be read or written
     └── MeshError      (ValueError)   arrays given as a mesh are not one
@@ -29,6 +30,10 @@ class Img2triError(Exception):
 
 class ParameterError(Img2triError, ValueError):
     """An option has a value it cannot have."""
+
+
+class UnknownOptionError(ParameterError, TypeError):
+    """There is no option of that name; Python's own error for it is a TypeError."""
 
 
 class ImageError(Img2triError, ValueError):

@@ -217,8 +217,10 @@ class Origin:
     ----------
     recipe
         "conforming", "structured" or "unstructured".
+    options
+        All options as given or by default, as plain data: ``mesh_image(image, **options)`` makes the same mesh again.
     settings
-        All options in use, and what was chosen where the user left the choice, as plain data for JSON.
+        The options, and what was chosen where they leave the choice, as plain data for JSON.
     outlines
         The dense outlines of the image, in the plane of the frame.
     pixels
@@ -234,6 +236,7 @@ class Origin:
     """
 
     recipe: str
+    options: dict[str, Any]
     settings: dict[str, Any]
     outlines: Outlines
     pixels: Floats

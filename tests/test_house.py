@@ -36,12 +36,13 @@ ORDER = [
     set(ROOMS),
     {"paper"},
     {"recipes", "certificate"},
+    {"options"},
     {"mesh"},
     {"pipeline"},
     {"cli"},
     {"__main__"},
 ]
-FOLDERS = {*ROOMS, "paper", "recipes", "certificate", "cli"}  # their files may import each other
+FOLDERS = {*ROOMS, "paper", "recipes", "certificate", "options", "cli"}  # their files may import each other
 # numpy is at home everywhere.
 LIBRARIES = {
     "raster": {"cv2", "PIL", "tifffile", "pydicom", "nibabel", "scipy"},  # scipy joins runs of pixels to components

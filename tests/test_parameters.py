@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import math
 from decimal import Decimal
 from fractions import Fraction
@@ -14,14 +13,13 @@ import specimens
 
 from img2tri import mesh_image
 from img2tri.errors import ImageError, ParameterError
-from img2tri.pipeline import PaperOptions
+from img2tri.options import OPTIONS
+from img2tri.options.paper_options import PaperOptions
 
 pytest.importorskip("resource")
 import children
 
 IMAGE = specimens.disc(16, 6.0)
-OPTIONS = [p for p in inspect.signature(mesh_image).parameters if p not in ("image", "paper", "progress")]
-OPTIONS += PaperOptions.__annotations__
 
 ODD = {
     "0": 0, "-1": -1, "1": 1, "0.0": 0.0, "-0.5": -0.5, "nan": math.nan, "inf": math.inf, "-inf": -math.inf, "1e-300": 1e-300,

@@ -30,8 +30,11 @@ class Report:
 
     Attributes
     ----------
-    recipe, settings, counted
-        How the mesh was made: all options, what was chosen, what was counted on the way.
+    recipe, options
+        How the mesh was made: all options as plain data, with which ``mesh_image(image, **options)`` makes it again. Of edge lengths
+        given as an array or a function there is only the hash of their grid.
+    settings, counted
+        The options with what was chosen where they leave the choice; what was counted on the way.
     n_vertices, n_triangles
         Counts.
     hausdorff, hausdorff_at, tolerance
@@ -60,6 +63,7 @@ class Report:
     """
 
     recipe: str
+    options: dict[str, Any]
     settings: dict[str, Any]
     counted: dict[str, Any]
     n_vertices: int
@@ -141,7 +145,7 @@ def certify(vertices: Floats, triangles: Ints, regions: Ints, frame: Frame, orig
         "narrow_at": [_place(p) for p in middles[narrow[:PLACES]]],
     }
     return Report(
-        origin.recipe, origin.settings, origin.counted, len(vertices), len(triangles), **facts, warnings=_warnings(facts)
+        origin.recipe, origin.options, origin.settings, origin.counted, len(vertices), len(triangles), **facts, warnings=_warnings(facts)
     )  # fmt: skip
 
 

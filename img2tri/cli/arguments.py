@@ -11,7 +11,8 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from img2tri import __version__
-from img2tri.cli.mesh_options import add_mesh_options, number, whole
+from img2tri.cli.mesh_options import add_mesh_options
+from img2tri.options.typed import number, whole_number
 
 IMAGES = "PNG, TIFF, JPEG, BMP and others; - for stdin"
 EXAMPLES = """examples:
@@ -151,5 +152,5 @@ def _add_files(parser: ArgumentParser) -> None:
     add("--quiet", action="store_true", help="print errors and warnings only")
 
     add = parser.add_argument_group("how it is run").add_argument
-    add("--workers", type=whole, default=1, metavar="N", help="mesh so many images at once, in processes of their own (default 1: in this "
-        "one); the files are the same")  # fmt: skip
+    about_workers = "mesh so many images at once, in processes of their own (default 1: in this one); the files are the same"
+    add("--workers", type=whole_number, default=1, metavar="N", help=about_workers)

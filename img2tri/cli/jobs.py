@@ -14,9 +14,9 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from img2tri.cli.mesh_options import MESH_OPTIONS
 from img2tri.cli.streams import DASH, STEM, check_stdin, check_stdout
 from img2tri.errors import FileError, ParameterError, finite
+from img2tri.options import OPTIONS
 
 if TYPE_CHECKING:
     from img2tri.raster.files.byte_sources import Source
@@ -58,7 +58,7 @@ class Job:
 
 def mesh_options(arguments: Namespace) -> dict[str, Any]:
     """Collect the options that go on to mesh_image, if they were given."""
-    return {name: getattr(arguments, name) for name in MESH_OPTIONS if name in arguments}
+    return {name: getattr(arguments, name) for name in OPTIONS if name in arguments}
 
 
 @contextmanager

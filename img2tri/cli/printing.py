@@ -10,9 +10,9 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Self
 
 from img2tri.cli.mesh_job import Outcome
-from img2tri.cli.mesh_options import MESH_OPTIONS
 from img2tri.cli.streams import abandon_stdout
 from img2tri.errors import FileError
+from img2tri.options import OPTIONS
 
 if TYPE_CHECKING:
     from rich.progress import Progress
@@ -80,7 +80,7 @@ def _with_options(message: str) -> str:
     >>> _with_options("labels: expected values other than the background, found 0; give background=None to mesh it too")
     '--labels: expected values other than the background, found 0; give --background none to mesh it too'
     """
-    names = "|".join((*MESH_OPTIONS, "height", "workers"))
+    names = "|".join((*OPTIONS, "height", "workers"))
     # Either the name a message begins with, or a name with a value somewhere in it.
     pattern = rf"^({names})(?=:)|\b({names})=(True|None|[\d.]+|)"
 

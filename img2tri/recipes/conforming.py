@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from img2tri.errors import ParameterError, finite
+from img2tri.errors import ParameterError
 from img2tri.raster.labels.segmentation import Segmentation
 from img2tri.shapes.periodic import FILLINGS, Twins, find_twins
 from img2tri.shapes.place.padded_chains import Points
@@ -110,9 +110,9 @@ def wanted_sizes(
     links: Links,
     frame: Frame,
     *,
-    gradation: float,
-    boundary: float | str | None = None,
-    shortest: float | str | None = None,
+    gradation: float = 0.17,
+    boundary_edge_length: float | str | None = None,
+    min_edge_length: float | str | None = None,
     elements_across: float | None = None,
     segments_per_turn: float | None = None,
 ) -> Sizes:
@@ -120,7 +120,6 @@ def wanted_sizes(
 
     Equilateral triangles of the default length fill the regions about `USUAL_TRIANGLES` times.
     """
-    gradation = finite("gradation", gradation, least=0.001, most=100)
     if edge_length is None:
         longest, field = max(4.0, math.sqrt(pixel_areas(links)[1:].sum() / USUAL_TRIANGLES * 4 / math.sqrt(3))), None
     else:
@@ -129,10 +128,10 @@ def wanted_sizes(
     return Sizes(
         longest,
         field,
-        None if boundary is None else frame.length("boundary_edge_length", boundary) / frame.pixel,
-        None if elements_across is None else finite("elements_across", elements_across, above=0),
-        None if segments_per_turn is None else finite("segments_per_turn", segments_per_turn, least=3),
-        0.0 if shortest is None else frame.length("min_edge_length", shortest) / frame.pixel,
+        None if boundary_edge_length is None else frame.length("boundary_edge_length", boundary_edge_length) / frame.pixel,
+        elements_across,
+        segments_per_turn,
+        0.0 if min_edge_length is None else frame.length("min_edge_length", min_edge_length) / frame.pixel,
         gradation,
     )
 

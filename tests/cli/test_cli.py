@@ -21,7 +21,7 @@ from PIL import Image
 
 import img2tri
 from img2tri import mesh_image, pipeline
-from img2tri.cli import main, mesh_options, printing
+from img2tri.cli import main, printing
 from img2tri.views.formats.save_load import SURFACE_FORMATS, load
 from img2tri.views.formats.solvers.save_for_solvers import EXPORTS
 from img2tri.views.formats.svg_dxf_geojson import DRAWING_FORMATS as DRAWINGS
@@ -126,12 +126,9 @@ def _process(*arguments, **given):
 
 
 def test_every_option_of_mesh_image_is_there_but_callables():
-    signature = inspect.signature(mesh_image).parameters
-    assert signature["paper"].kind == inspect.Parameter.VAR_KEYWORD
-    keyword_only = {name for name, p in signature.items() if p.kind == inspect.Parameter.KEYWORD_ONLY}
-    expected = (keyword_only - {"progress"}) | set(pipeline.PaperOptions.__annotations__)
-    assert set(mesh_options.MESH_OPTIONS) == expected
-    assert set(ARRIVE) == expected
+    keyword_only = {name for name, p in inspect.signature(mesh_image).parameters.items() if p.kind == inspect.Parameter.KEYWORD_ONLY}
+    assert set(OPTIONS) == keyword_only - {"progress"}
+    assert set(ARRIVE) == set(OPTIONS)
 
 
 @pytest.mark.parametrize("name", ARRIVE)

@@ -1,0 +1,160 @@
+"""The options of reading an image and finding its regions: one entry each.
+
+A group is what one stage gets. Groups are dictionaries with typed keys, so that editors and mypy know every option of `mesh_image`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Annotated, TypedDict
+
+from img2tri.options import option as o
+from img2tri.options import typed
+from img2tri.options.option import Option
+
+UNITS = ("um", "mm", "cm", "m", "in", "ft")
+
+
+class ReadOptions(TypedDict, total=False):
+    """Options of `raster.reading.read`."""
+
+    spacing: Annotated[
+        float | Sequence[float] | str | None,
+        Option(
+            None,
+            'Size of a pixel in world units: a number, a pair (dx, dy), or "file", what the file says, in mm.',
+            none="1, or what a DICOM or NIfTI file says",
+            typed=typed.pair_or_word,
+            sign="S",
+        ),
+    ]
+    origin: Annotated[
+        str | Sequence[float],
+        Option(
+            "lower",
+            '"lower": (0, 0) is the lower-left corner of the image, y points up; "upper": the upper-left corner, y points down; '
+            "(x, y): the place of the lower-left corner, in world units.",
+            typed=typed.pair_or_word,
+            sign="O",
+        ),
+    ]
+    page: Annotated[
+        int,
+        Option(0, "Which image of a file with several, from 0.", check=o.whole(), typed=typed.whole_number, sign="N"),
+    ]
+    max_pixels: Annotated[
+        int,
+        Option(
+            2**28,
+            "The most pixels a file may have; larger ones are refused before they fill the memory.",
+            check=o.whole(least=1, most=2**63 - 1),
+            typed=typed.whole_number,
+            sign="N",
+        ),
+    ]
+
+
+class PartOptions(TypedDict, total=False):
+    """Options of `raster.labels.cropping.crop`."""
+
+    crop: Annotated[
+        Sequence[float] | None,
+        Option(
+            None,
+            "Mesh only this part of the image, where it lies: (left, bottom, right, top) in world units.",
+            none="all of it",
+            typed=typed.numbers,
+            sign="L,B,R,T",
+        ),
+    ]
+
+
+class SegmentOptions(TypedDict, total=False):
+    """Options of `raster.labels.segmentation.segment`."""
+
+    threshold: Annotated[
+        float | str | None,
+        Option(
+            None,
+            "Gray level on the image's own scale; strictly greater is white and meshed. \"otsu\": Otsu's level.",
+            none="the middle of two values, else Otsu's level; 240 in the paper's recipes",
+            typed=typed.number_or_word,
+            sign="T",
+        ),
+    ]
+    labels: Annotated[
+        bool | Iterable[int] | None,
+        Option(
+            None,
+            "True: every value of the image is a region of its own. A list of values: these are.",
+            none="one white zone, region 1",
+            check=o.all_or_labels,
+            typed=typed.all_or_whole_numbers,
+            sign="[LIST]",
+        ),
+    ]
+    background: Annotated[
+        int | None,
+        Option(
+            0,
+            "The label that is not meshed; None: all are meshed.",
+            check=o.one_label,
+            typed=typed.whole_number_or_none,
+            sign="N",
+        ),
+    ]
+    invert: Annotated[bool, Option(False, "Mesh what is dark.", check=o.yes_or_no)]
+
+
+class SpeckOptions(TypedDict, total=False):
+    """Options of `raster.labels.segmentation.without_specks`."""
+
+    min_area: Annotated[
+        float | str | None,
+        Option(
+            None,
+            "Drop specks and fill holes smaller than this, in world units squared, or in pixels as 20px2.\n\n"
+            "In label maps they become part of the neighbour they share most with. What was removed is in the report.",
+            none="nothing is removed",
+            check=o.area,
+            sign="A",
+        ),
+    ]
+    largest: Annotated[bool, Option(False, "Keep only the largest component of each region.", check=o.yes_or_no)]
+    connectivity: Annotated[
+        int,
+        Option(
+            4,
+            "Pixels hang together through their sides (4), or also through their corners (8).",
+            check=o.four_or_eight,
+            typed=typed.whole_number,
+            sign="4|8",
+        ),
+    ]
+
+
+class NameOptions(TypedDict, total=False):
+    """What meshes and files carry along."""
+
+    names: Annotated[
+        dict[int, str] | None,
+        Option(
+            None,
+            "Names of regions by label, as in 1=bone.",
+            none="regions have their labels",
+            check=o.region_names,
+            typed=typed.label_and_value,
+            sign="N=NAME",
+            flag="--name",
+        ),
+    ]
+    units: Annotated[
+        str | None,
+        Option(
+            None,
+            f"What a world unit is, for files that can tell: {', '.join(UNITS)}.",
+            none="mm with `spacing` from a file, else unknown",
+            check=o.one_of(*UNITS),
+            sign="U",
+        ),
+    ]

@@ -1,0 +1,207 @@
+"""The options of outlines, edge lengths and triangles: one entry each, in groups as in `img2tri.options.image_options`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, TypedDict
+
+from img2tri.options import option as o
+from img2tri.options import typed
+from img2tri.options.option import Option
+
+if TYPE_CHECKING:
+    from img2tri.shapes.sizes.size_field import EdgeLength
+
+RECIPES = ("conforming", "structured", "unstructured")
+SMOOTHINGS = ("none", "uniform", "cotangent")
+MOST_PASSES = 100_000
+
+
+class RecipeOptions(TypedDict, total=False):
+    """Which recipe makes the mesh."""
+
+    recipe: Annotated[
+        str,
+        Option(
+            "conforming",
+            '"conforming": every region with its own outline, holes and all; "structured" and "unstructured": as in the paper, with what '
+            "these get wrong counted in the report.",
+            check=o.one_of(*RECIPES),
+            sign="R",
+        ),
+    ]
+
+
+class OutlineOptions(TypedDict, total=False):
+    """Options of `recipes.conforming.trace_outlines`."""
+
+    outline: Annotated[
+        str,
+        Option(
+            "smooth",
+            '"smooth": through the places between the pixels where the edge is likely to be; "pixel": exactly along their sides.',
+            check=o.one_of("smooth", "pixel"),
+            sign="O",
+        ),
+    ]
+    corners: Annotated[
+        str,
+        Option(
+            "auto",
+            '"auto": corners are kept sharp as far as `min_angle` allows; "keep": always, and smaller angles are listed in the report; '
+            '"round": they are smoothed as all else is.',
+            check=o.one_of("auto", "keep", "round"),
+            sign="C",
+        ),
+    ]
+    periodic: Annotated[
+        str | None,
+        Option(
+            None,
+            '"x", "y" or "xy": opposite sides, whose labels have to be the same, get vertices at the same places, see '
+            "`TriangleMesh.periodic_pairs`.",
+            none="sides are meshed each by itself",
+            sign="D",
+        ),
+    ]
+
+
+class SizeOptions(TypedDict, total=False):
+    """Options of `recipes.conforming.wanted_sizes`."""
+
+    edge_length: Annotated[
+        EdgeLength | None,
+        Option(
+            None,
+            "Wanted length of edges, in world units, px or % of the image diagonal; or one for each label, as in 1=4,2=8px.\n\n"
+            'Smaller is finer and slower. In Python: a number, "8px", "2%"; lengths by label, ``{1: 4, 2: "8px"}``; an array (h, w) of '
+            "lengths, one for each pixel; a function of places (k, 2) that returns lengths (k,).",
+            none="some 2000 triangles fill the image, at least 4 px",
+            check=o.edge_lengths,
+            typed=typed.length_by_label,
+            sign="L",
+            kind="float | str | dict | array | callable | None",
+        ),
+    ]
+    gradation: Annotated[
+        float,
+        Option(
+            0.17,
+            "By how much the length may grow per unit of distance; smaller gives better triangles, and more.",
+            check=o.real(least=0.001, most=100),
+            typed=typed.number,
+            sign="G",
+        ),
+    ]
+    min_edge_length: Annotated[
+        float | str | None,
+        Option(
+            None,
+            "Outlines get no shorter edges for the sake of the other options of lengths, only where tolerance, topology or angles need it.",
+            none="as short as these ask for",
+            check=o.length,
+            sign="L",
+        ),
+    ]
+    boundary_edge_length: Annotated[
+        float | str | None,
+        Option(None, "Length of edges along all outlines; fine there, coarse inside.", none="as inside", check=o.length, sign="L"),
+    ]
+    elements_across: Annotated[
+        float | None,
+        Option(
+            None,
+            "At least so many edges across the thinnest places; 2 or 3 for bending.",
+            none="not looked after",
+            check=o.real(above=0),
+            typed=typed.number,
+            sign="N",
+        ),
+    ]
+    segments_per_turn: Annotated[
+        float | None,
+        Option(
+            None,
+            "At least so many edges to a full turn of an outline, so that small holes stay round.",
+            none="as the tolerance needs",
+            check=o.real(least=3),
+            typed=typed.number,
+            sign="N",
+        ),
+    ]
+
+
+class ToleranceOptions(TypedDict, total=False):
+    """How far outlines and mesh may be apart."""
+
+    tolerance: Annotated[
+        float | str,
+        Option(
+            "0.5px",
+            "The greatest distance between the outlines and the edges of the mesh, a length; larger lets sharp detail go.",
+            check=o.length,
+            sign="L",
+        ),
+    ]
+
+
+class FillOptions(TypedDict, total=False):
+    """Options of `recipes.conforming.conform`, beside `corners` and `periodic`."""
+
+    min_angle: Annotated[
+        float,
+        Option(
+            30.0,
+            "The least angle of a triangle, 0 to 32 degrees; above 30 more triangles are needed.",
+            check=o.real(least=0, most=32),
+            typed=typed.number,
+            sign="A",
+        ),
+    ]
+    keep_area: Annotated[
+        bool,
+        Option(
+            True,
+            "Move vertices on curved outlines outwards so that the straight edges enclose the area the curve encloses, or leave them "
+            "on them.\n\nTrue makes computations on the mesh several times as exact.",
+            check=o.yes_or_no,
+        ),
+    ]
+    interior: Annotated[
+        str,
+        Option(
+            "lattice",
+            'Points inside: "lattice", for the best triangles; "poisson", scattered as in the paper.',
+            check=o.one_of("lattice", "poisson"),
+            sign="I",
+        ),
+    ]
+    seed: Annotated[
+        int,
+        Option(
+            0,
+            "Of all that is random: scattered points. The same seed gives the same mesh.",
+            check=o.whole(most=2**64 - 1),
+            typed=typed.whole_number,
+            sign="N",
+        ),
+    ]
+
+
+class SmoothOptions(TypedDict, total=False):
+    """Options of the smoothing that comes last, see `TriangleMesh.smoothed`."""
+
+    smoothing: Annotated[
+        str | None,
+        Option(
+            None,
+            '"none"; "uniform": each vertex to the mean of its neighbours; "cotangent": rounds off what is left of the pixels on boundary '
+            "and interfaces within the tolerance, the interior following.",
+            none='"uniform" for the recipe "unstructured", else "none"',
+            check=o.one_of(*SMOOTHINGS),
+            sign="S",
+        ),
+    ]
+    iterations: Annotated[
+        int,
+        Option(10, "Passes of smoothing.", check=o.whole(most=MOST_PASSES), typed=typed.whole_number, sign="N"),
+    ]

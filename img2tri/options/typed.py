@@ -1,0 +1,88 @@
+"""Texts typed on the command line -> numbers, pairs, lists and pairs of label and value, as `mesh_image` takes them.
+
+Only what makes a text a number, a pair or a list is checked here; what values may be is for the checks of the options to say.
+"""
+
+from __future__ import annotations
+
+from argparse import ArgumentTypeError
+
+
+def text(given: str) -> str:
+    """Leave a text as it is: words, and lengths with their units."""
+    return given
+
+
+def number(given: str) -> float:
+    """Return the number a text is."""
+    try:
+        return float(given)
+    except ValueError:
+        raise ArgumentTypeError(f"expected a number, found {given!r}") from None
+
+
+def whole_number(given: str) -> int:
+    """Return the whole number a text is."""
+    try:
+        return int(given)
+    except ValueError:
+        raise ArgumentTypeError(f"expected a whole number, found {given!r}") from None
+
+
+def number_or_word(given: str) -> float | str:
+    """Return the number a text is, or the text.
+
+    Examples
+    --------
+    >>> number_or_word("128"), number_or_word("otsu")
+    (128.0, 'otsu')
+    """
+    try:
+        return float(given)
+    except ValueError:
+        return given
+
+
+def numbers(given: str) -> tuple[float, ...]:
+    """Return numbers between commas."""
+    return tuple(map(number, given.split(",")))
+
+
+def pair_or_word(given: str) -> float | str | tuple[float, ...]:
+    """Return numbers between commas, one number, or the text."""
+    return numbers(given) if "," in given else number_or_word(given)
+
+
+def length_by_label(given: str) -> str | dict[int, str]:
+    """Return one length, or lengths by label.
+
+    Examples
+    --------
+    >>> length_by_label("8px"), length_by_label("1=4,2=8px")
+    ('8px', {1: '4', 2: '8px'})
+    """
+    return dict(map(label_and_value, given.split(","))) if "=" in given else given
+
+
+def all_or_whole_numbers(given: str) -> bool | list[int]:
+    """Return True for "all", or whole numbers between commas."""
+    return True if given == "all" else list(map(whole_number, given.split(",")))
+
+
+def whole_number_or_none(given: str) -> int | None:
+    """Return a whole number, or None for the word."""
+    return None if given.lower() == "none" else whole_number(given)
+
+
+def label_and_value(given: str) -> tuple[int, str]:
+    """Return a label and what it gets.
+
+    Examples
+    --------
+    >>> label_and_value("1=bone")
+    (1, 'bone')
+    """
+    label, _, value = given.partition("=")
+    if not value:
+        raise ArgumentTypeError(f"expected the number of a region, =, and what it gets, as in 1=bone, found {given!r}")
+    return whole_number(label), value
