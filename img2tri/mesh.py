@@ -294,7 +294,7 @@ class TriangleMesh:
         about: dict[str, Any] = {"version": __version__, "names": {str(label): name for label, name in self.names.items()}}
         if self.origin is not None:
             f = self.frame
-            about |= {"recipe": self.origin.recipe, **self.origin.settings, "names": about["names"]}
+            about |= {"recipe": self.origin.recipe, **self.origin.settings, "names": about["names"], "options": self.origin.options}
             about["frame"] = {"shape": f.shape, "spacing": f.spacing, "corner": f.corner, "upward": f.upward}
         texts = {"img2tri": json.dumps(about, default=str)} | ({"units": about["units"]} if about.get("units") else {})
         return {"z": self.frame.z, "cell_data": measure(self.vertices, self.triangles, ["q"]), "field_data": texts}

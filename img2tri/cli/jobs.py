@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 from img2tri.cli.streams import DASH, STEM, check_stdin, check_stdout
 from img2tri.errors import FileError, ParameterError, finite
 from img2tri.options import OPTIONS
+from img2tri.options.table import load_options
 
 if TYPE_CHECKING:
     from img2tri.raster.files.byte_sources import Source
@@ -57,8 +58,9 @@ class Job:
 
 
 def mesh_options(arguments: Namespace) -> dict[str, Any]:
-    """Collect the options that go on to mesh_image, if they were given."""
-    return {name: getattr(arguments, name) for name in OPTIONS if name in arguments}
+    """Collect the options that go on to mesh_image: those of a report, if one was named, and those that were typed, which win."""
+    again = {} if arguments.options is None else load_options(arguments.options)
+    return again | {name: getattr(arguments, name) for name in OPTIONS if name in arguments}
 
 
 @contextmanager

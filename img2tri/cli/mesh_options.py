@@ -12,6 +12,8 @@ from img2tri.options.table import GROUPS
 
 def add_mesh_options(parser: ArgumentParser) -> None:
     """Add the options of mesh_image. Those not given are not in the namespace: defaults are left to mesh_image."""
+    about = "take the options from a report, or JSON of them; those typed beside it win"
+    parser.add_argument("--options", metavar="REPORT", help=about)
     for heading, entries in GROUPS.items():
         group = parser.add_argument_group(heading, argument_default=SUPPRESS)
         for name, (_, option) in entries.items():

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar, cast, get_args, get_type_hints
 
 from img2tri.errors import FileError, ParameterError, UnknownOptionError
-from img2tri.options.image_options import SpeckOptions, NameOptions, PartOptions, ReadOptions, SegmentOptions
+from img2tri.options.image_options import NameOptions, PartOptions, ReadOptions, SegmentOptions, SpeckOptions
 from img2tri.options.mesh_options import FillOptions, OutlineOptions, RecipeOptions, SizeOptions, SmoothOptions, ToleranceOptions
 from img2tri.options.option import Option, every
 from img2tri.options.paper_options import PaperOptions

@@ -22,6 +22,7 @@ from PIL import Image
 import img2tri
 from img2tri import mesh_image, pipeline
 from img2tri.cli import main, printing
+from img2tri.options import OPTIONS
 from img2tri.views.formats.save_load import SURFACE_FORMATS, load
 from img2tri.views.formats.solvers.save_for_solvers import EXPORTS
 from img2tri.views.formats.svg_dxf_geojson import DRAWING_FORMATS as DRAWINGS
