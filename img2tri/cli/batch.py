@@ -26,8 +26,6 @@ from img2tri.cli.jobs import Job
 from img2tri.cli.mesh_job import Outcome, held, make
 from img2tri.errors import ParameterError
 
-Progress = Callable[[int, str, float], None]
-
 GRACE = 2.0  # seconds for workers to tidy up
 
 
@@ -40,7 +38,7 @@ class _Worker:
     number: int = -1
 
 
-def run(jobs: Sequence[Job], workers: int, progress: Progress) -> Generator[Outcome]:
+def run(jobs: Sequence[Job], workers: int, progress: Callable[[int, str, float], None]) -> Generator[Outcome]:
     """Do jobs.
 
     Parameters
@@ -71,7 +69,7 @@ def run(jobs: Sequence[Job], workers: int, progress: Progress) -> Generator[Outc
         yield outcome
 
 
-def _at_once(jobs: Sequence[Job], workers: int, progress: Progress) -> Generator[Outcome]:
+def _at_once(jobs: Sequence[Job], workers: int, progress: Callable[[int, str, float], None]) -> Generator[Outcome]:
     """Keep so many workers busy until all is done."""
     ready = [held(job) for job in jobs]  # stdin is read here, where it is
     done = {number: job for number, job in enumerate(ready) if isinstance(job, Outcome)}

@@ -79,7 +79,7 @@ def _made(job: Job, progress: Progress) -> Outcome:
     for path in job.meshes:
         mesh.save(path, height=job.height)
     if job.plot:
-        mesh.plot(pixels(image, job.options), job.plot, colour_by=job.colour_by)
+        mesh.plot(meshed_pixels(image, job.options), job.plot, colour_by=job.colour_by)
     if job.report:
         store(writable(job.report, [".json"]), (mesh.report.to_json() + "\n").encode())
     return Outcome(
@@ -105,7 +105,7 @@ def view(job: Job, command: str, progress: Progress) -> tuple[list[str], str]:
         frame=mesh.frame,
         report=mesh.report.to_json(),
         regions=mesh.regions,
-        image=pixels(image, job.options),
+        image=meshed_pixels(image, job.options),
         names=mesh.names,
         title=os.path.basename(job.image) if job.image != DASH else STEM,
         command=command,
@@ -131,7 +131,7 @@ def opened(image: str, options: dict[str, Any]) -> str | Source:
     return from_stdin(**_of(options, "max_pixels")) if image == DASH else image
 
 
-def pixels(image: str | Source, options: dict[str, Any]) -> Any:
+def meshed_pixels(image: str | Source, options: dict[str, Any]) -> Any:
     """Read the part of an image that was meshed."""
     from img2tri.raster.labels.cropping import crop
     from img2tri.raster.reading import read

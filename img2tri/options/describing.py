@@ -12,7 +12,7 @@ from img2tri.options.table import OPTIONS, TYPES
 
 F = TypeVar("F", bound=Callable[..., Any])
 
-WIDTH = 120
+DOC_WIDTH = 120
 PLACE = "{options}"
 
 
@@ -45,7 +45,7 @@ def parameters_section() -> str:
 def _described(name: str) -> str:
     option = OPTIONS[name]
     words = option.words + (f" None: {option.none}." if option.none else "")
-    lines = [textwrap.fill(paragraph, WIDTH, initial_indent=" " * 4, subsequent_indent=" " * 4) for paragraph in words.split("\n\n")]
+    lines = [textwrap.fill(paragraph, DOC_WIDTH, initial_indent=" " * 4, subsequent_indent=" " * 4) for paragraph in words.split("\n\n")]
     return f"{name} : {option.kind or words_of(TYPES[name])}, default {option.default!r}\n" + "\n\n".join(lines)
 
 

@@ -63,7 +63,7 @@ class PartOptions(TypedDict, total=False):
             None,
             "Mesh only this part of the image, where it lies: (left, bottom, right, top) in world units.",
             none="all of it",
-            typed=typed.numbers,
+            typed=typed.comma_separated,
             sign="L,B,R,T",
         ),
     ]
@@ -142,7 +142,7 @@ class NameOptions(TypedDict, total=False):
             None,
             "Names of regions by label, as in 1=bone.",
             none="regions have their labels",
-            check=o.region_names,
+            check=o.names_by_label,
             typed=typed.label_and_value,
             sign="N=NAME",
             flag="--name",

@@ -52,7 +52,7 @@ class Option:
     words: str
     none: str = ""
     check: Check = unchecked
-    typed: Callable[[str], Any] = texts.text
+    typed: Callable[[str], Any] = texts.as_typed
     sign: str = ""
     flag: str = ""
     kind: str = ""
@@ -114,7 +114,7 @@ def four_or_eight(name: str, value: Any) -> int:
     return value
 
 
-def region_names(_name: str, value: Any) -> dict[int, str]:
+def names_by_label(_name: str, value: Any) -> dict[int, str]:
     """Check names by label."""
     from img2tri.types import checked_names
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from argparse import ArgumentTypeError
 
 
-def text(given: str) -> str:
+def as_typed(given: str) -> str:
     """Leave a text as it is: words, and lengths with their units."""
     return given
 
@@ -43,14 +43,14 @@ def number_or_word(given: str) -> float | str:
         return given
 
 
-def numbers(given: str) -> tuple[float, ...]:
+def comma_separated(given: str) -> tuple[float, ...]:
     """Return numbers between commas."""
     return tuple(map(number, given.split(",")))
 
 
 def pair_or_word(given: str) -> float | str | tuple[float, ...]:
     """Return numbers between commas, one number, or the text."""
-    return numbers(given) if "," in given else number_or_word(given)
+    return comma_separated(given) if "," in given else number_or_word(given)
 
 
 def length_by_label(given: str) -> str | dict[int, str]:
