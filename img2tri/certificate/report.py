@@ -154,7 +154,8 @@ def _warnings(facts: dict[str, Any]) -> list[str]:
     lines = [f"{name}: {facts[name]}" for name in judging.DEFECTS if facts[name]]
     lines += [f"label {v} is in the mesh, not in the image" for v in facts["unknown_labels"]]
     lines += [
-        f"label {v}: {t['found'][0]} components with {t['found'][1]} holes, expected {t['expected'][0]} with {t['expected'][1]}"
+        f"label {v}: {_count(t['found'][0], 'component')} with {_count(t['found'][1], 'hole')}, "
+        f"expected {t['expected'][0]} with {t['expected'][1]}"
         for v, t in facts["topology"].items()
         if t["found"] != t["expected"]
     ]
@@ -171,6 +172,10 @@ def _warnings(facts: dict[str, Any]) -> list[str]:
         at = facts["smallest_angle_at"]
         lines.append(f"{facts['narrow']} triangles below {facts['min_angle']:g} degrees, the worst {facts['smallest_angle']:.4g} at {at}")
     return lines
+
+
+def _count(number: int, word: str) -> str:
+    return f"{number} {word}" if number == 1 else f"{number} {word}s"
 
 
 def _plain(value: Any) -> Any:

@@ -90,7 +90,7 @@ def _made(job: Job, progress: Progress) -> Outcome:
     )
 
 
-def view(job: Job, command: str, progress: Progress) -> tuple[list[str], str]:
+def view(job: Job, command: str, progress: Progress) -> tuple[Outcome, str]:
     """Mesh an image; return what there is to say about the mesh, and a page about it."""
     from img2tri.pipeline import mesh_image
     from img2tri.triangles.tools.quality_summary import measure
@@ -109,9 +109,9 @@ def view(job: Job, command: str, progress: Progress) -> tuple[list[str], str]:
         names=mesh.names,
         title=os.path.basename(job.image) if job.image != DASH else STEM,
         command=command,
-        unit="",
+        unit=(mesh.origin and mesh.origin.settings.get("units")) or "",
     )
-    return about(job.image, mesh), text
+    return Outcome(job.image, about(job.image, mesh), mesh.report.warnings), text
 
 
 def mesh_of(path: str, suffix: str | None) -> TriangleMesh:

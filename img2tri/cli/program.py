@@ -13,6 +13,7 @@ import sys
 from argparse import Namespace
 from collections.abc import Sequence
 from contextlib import closing
+from dataclasses import replace
 from functools import partial
 
 from img2tri.cli.arguments import parse
@@ -97,14 +98,13 @@ def _view_report(arguments: Namespace, typed: Sequence[str]) -> int:
         check_stdin()
     with Bar([arguments.image], quiet=arguments.quiet) as bar:
         job = Job(arguments.image, mesh_options(arguments))
-        lines, text = view(job, shlex.join(["img2tri", *typed]), partial(bar, 0))
+        outcome, text = view(job, shlex.join(["img2tri", *typed]), partial(bar, 0))
     if target is None:
         to_stdout(text.encode())
     else:
         store(target, text.encode())
-        lines.append(f"{'saved':<12}{arguments.output}")
-    if not arguments.quiet:
-        tell(lines, aside=sent)
+    lines = () if arguments.quiet else (*outcome.lines, *([] if sent else [f"{'saved':<12}{arguments.output}"]))
+    tell_outcome(replace(outcome, lines=lines), several=False, aside=sent)
     return DONE
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import inspect
 import io
 import json
@@ -11,6 +12,7 @@ import struct
 import subprocess
 import sys
 import time
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -618,6 +620,20 @@ def test_view_report_writes_one_page_that_needs_nothing_else(tmp_path, capsys):
     assert "https://" not in text
     assert "--edge-length 4" in text
     assert "saved" in capsys.readouterr().out
+
+
+def test_view_report_hands_on_units_and_says_what_is_not_kept(tmp_path, capsys):
+    image, page = tmp_path / "a.png", tmp_path / "a.html"
+    Image.fromarray(np.kron(np.tri(8, dtype=np.uint8), np.full((9, 9), 255, np.uint8))).save(image)
+    options = ["--units", "um", "--spacing", "0.5", "--recipe", "structured", "--threshold", "9", "--step", "7"]
+    assert main(["view-report", str(image), "-o", str(page), *options]) == 0
+    packed = re.search(r'id="mesh">(.*?)<', page.read_text(encoding="utf-8"))[1]
+    assert b'"unit": "um"' in zlib.decompress(base64.b64decode(packed))
+    said = capsys.readouterr().err
+    assert main(["mesh", str(image), *options, "--report", str(tmp_path / "a.json")]) == 0
+    warned = [line for line in capsys.readouterr().err.splitlines() if "warning" in line]
+    assert warned
+    assert said.splitlines() == warned
 
 
 def test_view_report_says_in_one_line_what_is_wrong(tmp_path, capsys):

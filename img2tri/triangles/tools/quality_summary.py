@@ -139,8 +139,8 @@ class Quality:
         head += f", {self.turned_over} turned over" if self.turned_over else ""
         head += f", {self.flat} without area" if self.flat else ""
         width = max([12, *map(len, self.arrays)])
-        lines = [head, " " * width + "".join(f"{key:>9}" for key in ("min", "1 %", "mean", "99 %", "max"))]
+        lines = [head, " " * width + "".join(f"{key:>10}" for key in ("min", "1 %", "mean", "99 %", "max"))]
         for name, figures in self.summary().items():
             unit = "degrees" if METRICS[name].unit == "degrees" else ""
-            lines.append(f"{name:<{width}}" + "".join(f"{figure:9.4g}" for figure in figures.values()) + (f"  {unit}" if unit else ""))
+            lines.append(f"{name:<{width}}" + "".join(f"{figure:10.4g}" for figure in figures.values()) + (f"  {unit}" if unit else ""))
         return "\n".join(lines)

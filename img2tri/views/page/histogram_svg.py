@@ -8,6 +8,7 @@ from __future__ import annotations
 import html
 
 import numpy as np
+from numpy.typing import NDArray
 
 from img2tri.types import Floats
 
@@ -16,15 +17,29 @@ RAMP = [
     "440154", "48186a", "472d7b", "424086", "3b528b", "33638d", "2c728e", "26828e", "21918c", "1fa088", "28ae80", "3fbc73", "5ec962",
     "84d44b", "addc30", "d8e219", "fde725",
 ]  # fmt: skip
-_BINS = 50
+BINS = 50
 _WIDTH, _HEIGHT, _FOOT = 480, 150, 172  # of the chart; where the bars stand; where the numbers below them end
 
 
-def chart(title: str, words: str, values: Floats, most: float, unit: str) -> str:
+def bins(values: Floats, most: float) -> NDArray[np.uint8]:
+    """Return the number of the bar each value is counted in, 0 to 49.
+
+    Examples
+    --------
+    >>> bins(np.array([0.0, 0.5, 1.0, np.nan]), 1.0).tolist()
+    [0, 25, 49, 0]
+    """
+    limits = np.linspace(0, most, BINS + 1)
+    return (np.searchsorted(limits, np.nan_to_num(values).clip(0, most), side="right") - 1).clip(0, BINS - 1).astype(np.uint8)
+
+
+def chart(name: str, title: str, words: str, values: Floats, most: float, unit: str) -> str:
     """Draw how many triangles have which value.
 
     Parameters
     ----------
+    name
+        What the page calls the values: a click on a bar chooses its triangles.
     title, words
         Above the chart, on the left and on the right.
     values
@@ -41,15 +56,16 @@ def chart(title: str, words: str, values: Floats, most: float, unit: str) -> str
 
     Examples
     --------
-    >>> chart("Quality", "", np.array([0.25, 1.0]), 1.0, "").rpartition('"quiet">')[2]
+    >>> chart("quality", "Quality", "", np.array([0.25, 1.0]), 1.0, "").rpartition('"quiet">')[2]
     'worst 0.250 · 1 % below 0.258 · mean 0.625</div></section>'
     """
     shown = np.nan_to_num(values).clip(0, most)
-    counts, limits = np.histogram(shown, bins=_BINS, range=(0, most))
-    step, tallest = _WIDTH / _BINS, (_HEIGHT - 8) / max(counts.max(), 1)
+    counts, limits = np.bincount(bins(values, most), minlength=BINS), np.linspace(0, most, BINS + 1)
+    step, tallest = _WIDTH / BINS, (_HEIGHT - 8) / max(counts.max(), 1)
     bars = "".join(
         f'<rect x="{i * step:.2f}" y="{_HEIGHT - count * tallest:.2f}" width="{step - 0.6:.2f}" height="{count * tallest:.2f}" '
-        f'fill="#{shade((i + 0.5) / _BINS)}"><title>{low:g}{unit} to {high:g}{unit}: {count:,} triangles</title></rect>'
+        f'fill="#{shade((i + 0.5) / BINS)}"/><rect class="hit" role="button" tabindex="-1" data-bin="{name}:{i}" x="{i * step:.2f}" y="0" '
+        f'width="{step:.2f}" height="{_HEIGHT}"><title>{low:g}{unit} to {high:g}{unit}: {count:,} triangles</title></rect>'
         for i, (count, low, high) in enumerate(zip(counts.tolist(), limits[:-1], limits[1:], strict=True))
         if count
     )
@@ -62,7 +78,7 @@ def chart(title: str, words: str, values: Floats, most: float, unit: str) -> str
     numbers = " · ".join(f"{name} {value:{form}}{unit}" for name, value in figures.items())
     return (
         f'<section class="card"><div class="head"><h2>{html.escape(title)}</h2><span class="quiet">{html.escape(words)}</span></div>'
-        f'<svg class="chart" viewBox="0 0 {_WIDTH} {_FOOT}" role="img" aria-label="{html.escape(title)}: {numbers}">'
+        f'<svg class="chart" viewBox="0 0 {_WIDTH} {_FOOT}" role="group" aria-label="{html.escape(title)}: {numbers}">'
         f'<line class="axis" x1="0" x2="{_WIDTH}" y1="{_HEIGHT}" y2="{_HEIGHT}"/>{bars}'
         f'<line class="worst" x1="{worst:.1f}" x2="{worst:.1f}" y1="{_HEIGHT - 26}" y2="{_HEIGHT}"/>{ticks}'
         f'</svg><div class="quiet">{numbers}</div></section>'

@@ -1,8 +1,8 @@
 """A page about a mesh: the mesh, its image and its certificate -> one HTML file that needs nothing but itself.
 
-The page holds the image as a PNG, the mesh as raw arrays in base64, the certificate as JSON, and the script that draws them; it is read
-without a network, by any browser, years later. What it says in words and tables is in `img2tri.views.page.html_tables` and
-`img2tri.views.page.histogram_svg`; how it looks and draws, in page.html and page.js beside this file.
+The page holds the image as a PNG, the mesh as arrays, deflated and in base64, the certificate as JSON, and the scripts that draw them;
+it is read without a network, by any browser, years later. What it says in words and tables is in `img2tri.views.page.html_tables` and
+`img2tri.views.page.histogram_svg`; how it looks and draws, in page.html and what is beside it.
 """
 
 from __future__ import annotations
@@ -10,7 +10,9 @@ from __future__ import annotations
 import base64
 import json
 import re
+import zlib
 from collections.abc import Mapping
+from functools import cache
 from importlib.resources import files
 from typing import Any
 
@@ -18,19 +20,18 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from img2tri import __version__
-from img2tri.arrays import unique_edges
+from img2tri.arrays import Floats, Ints
 from img2tri.errors import MeshError
-from img2tri.types import Floats, Frame, Ints
-from img2tri.views.figures.colours import palette
+from img2tri.types import Frame
 from img2tri.views.objects.body_per_region import unique_names
 from img2tri.views.objects.flat_or_extruded import per_triangle, plane_mesh
-from img2tri.views.objects.region_borders import bordering
 from img2tri.views.page import html_tables as tables
-from img2tri.views.page.histogram_svg import RAMP, chart
+from img2tri.views.page.histogram_svg import chart
 from img2tri.views.page.image_png import png
+from img2tri.views.page.packing import LARGEST_ANGLE, colours, packed_mesh
 
+SCRIPTS = ("drawing.js", "viewer.js", "page.js")
 _PIXELS = 4096  # of the image along either side; more are thinned out, as browsers refuse much larger ones
-_LARGEST_ANGLE = 60.0
 
 
 def page(
@@ -97,50 +98,62 @@ def page(
     quality = per_triangle("q", q, len(t)).astype(np.float64)
     angle = per_triangle("min_angle", min_angle, len(t)).astype(np.float64)
     facts = _facts(report)
-    present, index = np.unique(labels, return_inverse=True)
-    called = unique_names(present.tolist(), names or {})
-    colours = [f"#{red:02x}{green:02x}{blue:02x}" for red, green, blue in palette(len(present)).tolist()]
-    edges, sides = unique_edges(t)
     places = tables.places(facts)
-    xy, spots = _page_coordinates(v, frame), _page_coordinates(np.array([place.at for place in places]).reshape(-1, 2), frame)
-    view = {
-        **_placed(xy, edges, frame, unit),
-        "image": image is not None,
-        "ramp": RAMP,
-        "regions": [{"name": called[label], "colour": colour} for label, colour in zip(present.tolist(), colours, strict=True)],
-        "places": [
-            {"x": x, "y": y, "number": place.number, "first": place.first} for place, (x, y) in zip(places, spots.tolist(), strict=True)
-        ],
+    called = dict(names or {})
+    packed = packed_mesh(v, t, labels, q=quality, min_angle=angle, frame=frame, names=called, unit=unit, places=places)
+    picture = "" if image is None else base64.b64encode(png(thinned(np.asarray(image), _PIXELS))).decode()
+    fill = {
+        **pieces(v, t, labels, q=quality, min_angle=angle, names=called, facts=facts),
+        "title": tables.text(title),
+        "knobs": "",
+        "command": tables.text(command),
+        "python": "",
+        "foot": "this page needs nothing but itself",
     }
-    arrays = {
-        "vertices": xy.astype("<f4"),
-        "triangles": t.astype("<u4"),
-        "borders": edges[bordering(sides, labels)].astype("<u4"),
-        "quality": _bytes(quality),
-        "angle": _bytes(angle / _LARGEST_ANGLE),
-        "regions": index.astype("<u4"),
-    }
-    counted = np.bincount(index, minlength=len(present)).tolist()
     parts = {
         "version": __version__,
-        "title": tables.text(title),
+        "title": fill["title"],
+        "style": resource("page.css"),
+        "body": filled(resource("body.html"), fill),
+        "report": _inert(report),
+        "mesh": base64.b64encode(zlib.compress(packed, 6)).decode(),
+        "picture": picture and f'<script type="application/octet-stream" id="picture">{picture}</script>',
+        "script": "".join(resource(name) for name in SCRIPTS),
+    }
+    return filled(resource("page.html"), parts)
+
+
+def pieces(
+    vertices: Floats,
+    triangles: Ints,
+    regions: NDArray[Any],
+    *,
+    q: Floats,
+    min_angle: Floats,
+    names: Mapping[int, str],
+    facts: dict[str, Any],
+) -> dict[str, str]:
+    """Say in HTML what there is to say about a mesh: the name of its place on the page -> a piece."""
+    present, counted = np.unique(regions, return_counts=True)
+    called = unique_names(present.tolist(), names)
+    places = tables.places(facts)
+    rows = [*zip(present.tolist(), called.values(), colours(len(present)), counted.tolist(), strict=True)]
+    return {
+        "version": __version__,
         "verdict": tables.verdict(facts),
-        "tiles": tables.tiles(facts, len(v), len(t), len(present), quality, angle),
+        "tiles": tables.tiles(facts, len(vertices), len(triangles), len(present), q, min_angle),
         "warnings": tables.warnings(facts, places),
         "certificate": tables.certificate(facts, places),
-        "charts": chart("Quality", "q = 2 r / R; 1 is equilateral", quality, 1.0, "")
-        + chart("Smallest angle", "of each triangle; 60° is equilateral", angle, _LARGEST_ANGLE, "°"),
-        "regions": tables.regions(facts, [*zip(present.tolist(), called.values(), colours, counted, strict=True)]),
-        "command": tables.text(command),
+        "charts": chart("quality", "Quality", "q = 2 r / R; 1 is equilateral", q, 1.0, "")
+        + chart("angle", "Smallest angle", "of each triangle; 60° is equilateral", min_angle, LARGEST_ANGLE, "°"),
+        "regions": tables.regions(facts, rows),
         "settings": tables.settings(facts),
-        "report": _inert(report),
-        "view": _inert(json.dumps(view)),
-        "arrays": "\n".join(_embedded(name, array.tobytes()) for name, array in arrays.items())
-        + ("" if image is None else "\n" + _embedded("picture", png(_thinned(np.asarray(image))))),
-        "script": _resource("page.js"),
     }
-    # In one pass, so that nothing that is filled in is taken for a place to fill.
-    return re.sub(r"@(\w+)@", lambda found: parts[found[1]], _resource("page.html"))
+
+
+def filled(text: str, parts: Mapping[str, str]) -> str:
+    """Fill in the places ``@name@`` of a text, in one pass, so that nothing that is filled in is taken for a place to fill."""
+    return re.sub(r"@(\w+)@", lambda found: parts[found[1]], text)
 
 
 def _facts(report: str) -> dict[str, Any]:
@@ -153,36 +166,10 @@ def _facts(report: str) -> dict[str, Any]:
     return facts
 
 
-def _page_coordinates(points: Floats, frame: Frame) -> Floats:
-    """Turn world coordinates into pixels of the image, the smaller side being 1, y down as on a screen."""
-    rows, columns = frame.row_column(points)
-    return np.stack([columns * (frame.spacing[0] / frame.pixel), rows * (frame.spacing[1] / frame.pixel)], axis=-1)
-
-
-def _placed(xy: Floats, edges: Ints, frame: Frame, unit: str) -> dict[str, Any]:
-    """Where the image and the mesh lie on the page, and how to get back to the world."""
-    return {
-        "size": [frame.shape[1] * frame.spacing[0] / frame.pixel, frame.shape[0] * frame.spacing[1] / frame.pixel],
-        "box": [*xy.min(axis=0).tolist(), *xy.max(axis=0).tolist()],
-        "edge": float(np.median(np.linalg.norm(xy[edges[:, 0]] - xy[edges[:, 1]], axis=1))),
-        "corner": list(frame.corner),
-        "pixel": frame.pixel,
-        "upward": frame.upward,
-        "unit": unit,
-    }
-
-
-def _bytes(values: Floats) -> NDArray[np.uint8]:
-    return np.round(255 * np.nan_to_num(values).clip(0, 1)).astype(np.uint8)
-
-
-def _thinned(image: NDArray[Any]) -> NDArray[Any]:
-    step = max(1, -(-max(image.shape, default=1) // _PIXELS))
+def thinned(image: NDArray[Any], most: int) -> NDArray[Any]:
+    """Leave out rows and columns of an image, alike in both directions, until either side has at most so many pixels."""
+    step = max(1, -(-max(image.shape[:2], default=1) // most))
     return image[::step, ::step] if image.ndim > 1 else image
-
-
-def _embedded(name: str, data: bytes) -> str:
-    return f'<script type="application/octet-stream" id="{name}">{base64.b64encode(data).decode()}</script>'
 
 
 def _inert(text: str) -> str:
@@ -190,5 +177,7 @@ def _inert(text: str) -> str:
     return text.replace("<", "\\u003c")
 
 
-def _resource(name: str) -> str:
+@cache
+def resource(name: str) -> str:
+    """Return a text that lies beside this file."""
     return files("img2tri.views.page").joinpath(name).read_text(encoding="utf-8")

@@ -21,6 +21,7 @@ _DEFECTS = {
     "duplicate_vertices": "Vertices twice in one place",
     "unused_vertices": "Vertices without a triangle",
 }
+REGION_COLUMNS = ("Region", "Triangles", "Area", "Error", "Parts / holes")
 _MARKS = {True: ("✓", "good", "kept"), False: ("✗", "bad", "not kept"), None: ("-", "none", "not promised")}
 _LISTS = {"wrong_pixels_at": "pixel centres", "narrow_at": "triangles below"}  # and what their warnings say
 _PLACE = re.compile(r"\((-?[\d.]+(?:e[-+]?\d+)?), (-?[\d.]+(?:e[-+]?\d+)?)\)")
@@ -200,18 +201,28 @@ def _link(words: str, place: int, *, bad: bool = False) -> str:
 def regions(facts: dict[str, Any], rows: Sequence[tuple[int, str, str, int]]) -> str:
     """Lay out the regions, each (label, name, colour, number of triangles), with what the certificate knows about them."""
     body = ""
-    for label, name, colour, triangles in rows:
+    for i, (label, name, colour, triangles) in enumerate(rows):
         area, shape = facts.get("areas", {}).get(str(label)), facts.get("topology", {}).get(str(label))
         right = shape is None or shape["found"] == shape["expected"]
         holes = "" if shape is None else f"{shape['found'][0]} / {shape['found'][1]}"
-        found, error = ("", "") if area is None else (_number(area["mesh"]), _percent(area["error"]))
+        cells = [_cell(f"{triangles:,}", triangles)]
+        if area is None:
+            cells += 2 * [_cell("", "")]
+        else:
+            cells += [_cell(_number(area["mesh"]), area["mesh"]), _cell(_percent(area["error"]), abs(area["error"]))]
         body += (
-            f'<tr><td><span class="swatch" style="background:{colour}"></span>{text(name)}</td><td class="number">{triangles:,}</td>'
-            f'<td class="number">{found}</td><td class="number">{error}</td>'
+            f'<tr data-region="{i}"><td data-value="{text(name)}"><button type="button" class="place" data-region="{i}">'
+            f'<span class="swatch" style="background:{colour}"></span>{text(name)}</button></td>{"".join(cells)}'
             f'<td class="number{"" if right else " bad-text"}">{holes}</td></tr>'
         )
-    head = "<th>Region</th>" + "".join(f'<th class="number">{name}</th>' for name in ("Triangles", "Area", "Error", "Parts / holes"))
+    heads = [f'<button type="button" data-sort="{i}" title="order">{name}</button>' for i, name in enumerate(REGION_COLUMNS)]
+    head = f"<th>{heads[0]}</th>" + "".join(f'<th class="number">{words}</th>' for words in heads[1:])
     return f'<div class="long"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>'
+
+
+def _cell(words: str, value: object) -> str:
+    """Lay out a number, with its value to order rows by."""
+    return f'<td class="number" data-value="{value}">{words}</td>'
 
 
 def settings(facts: dict[str, Any]) -> str:
