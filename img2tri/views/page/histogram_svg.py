@@ -17,7 +17,7 @@ RAMP = [
     "440154", "48186a", "472d7b", "424086", "3b528b", "33638d", "2c728e", "26828e", "21918c", "1fa088", "28ae80", "3fbc73", "5ec962",
     "84d44b", "addc30", "d8e219", "fde725",
 ]  # fmt: skip
-BINS = 50
+BARS = 50
 _WIDTH, _HEIGHT, _FOOT = 480, 150, 172  # of the chart; where the bars stand; where the numbers below them end
 
 
@@ -29,8 +29,8 @@ def bins(values: Floats, most: float) -> NDArray[np.uint8]:
     >>> bins(np.array([0.0, 0.5, 1.0, np.nan]), 1.0).tolist()
     [0, 25, 49, 0]
     """
-    limits = np.linspace(0, most, BINS + 1)
-    return (np.searchsorted(limits, np.nan_to_num(values).clip(0, most), side="right") - 1).clip(0, BINS - 1).astype(np.uint8)
+    limits = np.linspace(0, most, BARS + 1)
+    return (np.searchsorted(limits, np.nan_to_num(values).clip(0, most), side="right") - 1).clip(0, BARS - 1).astype(np.uint8)
 
 
 def chart(name: str, title: str, words: str, values: Floats, most: float, unit: str) -> str:
@@ -60,11 +60,11 @@ def chart(name: str, title: str, words: str, values: Floats, most: float, unit: 
     'worst 0.250 · 1 % below 0.258 · mean 0.625</div></section>'
     """
     shown = np.nan_to_num(values).clip(0, most)
-    counts, limits = np.bincount(bins(values, most), minlength=BINS), np.linspace(0, most, BINS + 1)
-    step, tallest = _WIDTH / BINS, (_HEIGHT - 8) / max(counts.max(), 1)
+    counts, limits = np.bincount(bins(values, most), minlength=BARS), np.linspace(0, most, BARS + 1)
+    step, tallest = _WIDTH / BARS, (_HEIGHT - 8) / max(counts.max(), 1)
     bars = "".join(
         f'<rect x="{i * step:.2f}" y="{_HEIGHT - count * tallest:.2f}" width="{step - 0.6:.2f}" height="{count * tallest:.2f}" '
-        f'fill="#{shade((i + 0.5) / BINS)}"/><rect class="hit" role="button" tabindex="-1" data-bin="{name}:{i}" x="{i * step:.2f}" y="0" '
+        f'fill="#{shade((i + 0.5) / BARS)}"/><rect class="hit" role="button" tabindex="-1" data-bin="{name}:{i}" x="{i * step:.2f}" y="0" '
         f'width="{step:.2f}" height="{_HEIGHT}"><title>{low:g}{unit} to {high:g}{unit}: {count:,} triangles</title></rect>'
         for i, (count, low, high) in enumerate(zip(counts.tolist(), limits[:-1], limits[1:], strict=True))
         if count

@@ -19,11 +19,11 @@ from img2tri.types import Frame
 from img2tri.views.figures.colours import palette
 from img2tri.views.objects.body_per_region import unique_names
 from img2tri.views.objects.region_borders import bordering
-from img2tri.views.page.histogram_svg import BINS, bins, shade
+from img2tri.views.page.histogram_svg import BARS, bins, shade
 from img2tri.views.page.html_tables import Place
 
 LARGEST_ANGLE = 60.0
-WORST = 200  # triangles one can go to one after the other
+_WORST = 200  # triangles one can go to one after the other
 
 
 def pack(head: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> bytes:
@@ -63,7 +63,7 @@ def packed_mesh(
         **placed(frame, unit),
         "box": [*xy.min(axis=0).tolist(), *xy.max(axis=0).tolist()],
         "edge": float(np.median(np.linalg.norm(xy[edges[:, 0]] - xy[edges[:, 1]], axis=1))),
-        "ramp": [f"#{shade((i + 0.5) / BINS)}" for i in range(BINS)],
+        "ramp": [f"#{shade((i + 0.5) / BARS)}" for i in range(BARS)],
         "regions": [
             {"label": label, "name": called[label], "colour": colour}
             for label, colour in zip(present.tolist(), colours(len(present)), strict=True)
@@ -108,7 +108,7 @@ def colours(count: int) -> list[str]:
 
 def _worst(min_angle: Floats) -> list[int]:
     """Return the triangles with the smallest angles, the worst first."""
-    count = min(WORST, len(min_angle))
+    count = min(_WORST, len(min_angle))
     some = np.argpartition(min_angle, count - 1)[:count]
     found: list[int] = some[np.lexsort([some, min_angle[some]])].tolist()
     return found
