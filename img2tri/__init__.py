@@ -1,20 +1,40 @@
 """img2tri: an image in, a triangle mesh out that one can compute on, plot, or print.
 
-The flow, one folder for each step::
+The flow, one folder for each stage; each is functions from plain data to plain data, and can be used alone::
 
     image  -> labels      raster/      a file or an array becomes a label for each pixel
-    labels -> outlines    shapes/      the curves that part the regions, as fine as the pixels; then coarsened to points
-    points -> triangles   triangles/   triangulation, smoothing, quality
-    mesh   -> others      views/       trimesh, pyvista, files, figures
+    labels -> outlines    shapes/      the curves that part the regions, as fine as the pixels; then simplified to the wanted edge length
+    points -> triangles   triangles/   a mesh is generated between them; tools for any mesh
+    mesh   -> others      views/       objects of other libraries, files, figures
 
-`pipeline` runs them in order; `conforming` and `paper` are its recipes; `mesh` holds the result and `report` judges it.
+The house around the stages:
 
-The words: an *image* has *labels*, one for each pixel; pixels of one label make a *region*. *Outlines* part regions; they are
-chains of *segments*, closed to *rings* around components and *holes*. An *interface* is shared by two regions, three or more meet
-at a *junction*. *Points* are not yet joined; *vertices* are the corners of *triangles*.
+    pipeline      `mesh_image`, every stage in order: the place to begin reading
+    options/      every option of `mesh_image`, written once: type, default, unit, words, check
+    recipes/      ways through the stages; only recipes hand data from one stage to the next
+    paper/        the paper this library began with: every function of its listing, and its two recipes
+    certificate/  `Report`: what a finished mesh keeps of what was promised, measured
+    mesh          `TriangleMesh`, the result, with methods for all that can be done with it
+    types         records handed between stages; `arrays` and `errors` are what all files share
+    cli/          the command line, ``img2tri``; ``python -m img2tri`` begins in `__main__`
+
+The words one has to know:
+
+    region        the pixels of one label, and what becomes of them; 0 is the number of all that is not meshed
+    crack edge    the side shared by two pixels of different labels (Kovalevsky 1989): outlines begin as chains of these
+    dual edge     the line between the centres of these two pixels; the outline crosses it somewhere in between, at its *crossing*
+    chain         crossings one after the other, with one region on the left and one on the right, shared by both; it ends at two
+                  nodes, or is a closed *ring*
+    node          where three or more regions meet (a junction), or an outline meets the frame of the image
+    outlines      all chains. *Dense*: a point for each crossing, smoothed; this is what a mesh is judged by. *Simplified*: only
+                  some vertices are kept, with straight *chords* that stay within the tolerance of the *arcs* they replace
+    size field    how long edges should be at each place; its growth is limited
+    PSLG          planar straight-line graph: the simplified outlines as points and segments that triangles have to respect
+    template      the part of a hexagonal lattice that fills the inside; the *strip* between it and the outlines is triangulated
+    certificate   the numbers that say how well a mesh keeps its promises, measured on its triangles alone
 
 World coordinates have x to the right and y up, the lower-left corner of the image at (0, 0); pixel (row r, column c) of an
-image h pixels high is the square from (c, h - r - 1) to (c + 1, h - r) times the spacing.
+image h pixels high is the square from (c, h - r - 1) to (c + 1, h - r) times the spacing. Inside the library lengths are pixels.
 
 >>> import numpy as np, img2tri
 >>> img2tri.mesh_image(np.ones((20, 30), bool), edge_length=5, spacing=0.1).report.areas[1]["error"]

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from img2tri import __version__
 from img2tri.errors import MeshError, ParameterError, choice
 from img2tri.triangles.tools.mesh_checks import check_mesh, check_regions
-from img2tri.types import Floats, Frame, Ints, Origin
+from img2tri.types import Floats, Frame, Ints, Provenance
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -58,7 +58,7 @@ class TriangleMesh:
     regions: Ints
     frame: Frame = field(default_factory=lambda: Frame((1, 1)))
     names: Mapping[int, str] = field(default_factory=dict)
-    origin: Origin | None = None
+    origin: Provenance | None = None
 
     def __post_init__(self) -> None:
         vertices, triangles = check_mesh(self.vertices, self.triangles)

@@ -26,7 +26,7 @@ from img2tri.recipes.conforming import Sizes, conform, trace_outlines, wanted_si
 from img2tri.shapes.periodic import check_periodic
 from img2tri.shapes.polygons import enclosed_areas
 from img2tri.shapes.trace.dual_edges import pixel_areas, pixels_beside
-from img2tri.types import Made, Origin, Outlines, Picture
+from img2tri.types import Outlines, Picture, Provenance, RecipeMesh
 
 PAPER_THRESHOLD, PAPER_STEP = 240, "10px"
 PAPER_SMOOTHING = {"structured": "none", "unstructured": "uniform"}
@@ -100,7 +100,7 @@ def mesh_image(image: Any, *, progress: Callable[[str, float], None] | None = No
     kept = plain(o, field=None if sizes.field is None else sizes.field.grid)
     mesh = TriangleMesh(
         frame.world(made.vertices), made.triangles, outlines.labels[made.regions], frame, o["names"] or {},
-        Origin(
+        Provenance(
             o["recipe"], kept, kept | _chosen(o, picture, zones, sizes, within), outlines, *pixels_beside(links),
             areas=pixel_areas(links) if zones.gray is None else enclosed_areas(outlines),  # gray values may place the outlines
             counted={**made.counted, "removed": removed},
@@ -131,7 +131,7 @@ def _with_paper_threshold(o: MeshOptions) -> SegmentOptions:
     return zones
 
 
-def _paper(zones: Segmentation, picture: Picture, sizes: Sizes, o: MeshOptions) -> Made:
+def _paper(zones: Segmentation, picture: Picture, sizes: Sizes, o: MeshOptions) -> RecipeMesh:
     """Mesh by a recipe of the paper."""
     paper = of(PaperOptions, o)
     if o["recipe"] == "structured" and o["edge_length"] is None and paper["step"] is None:

@@ -210,7 +210,7 @@ class Outlines:
 
 
 @dataclass(frozen=True, eq=False)
-class Origin:
+class Provenance:
     """How a mesh was made, and what it is to be judged by.
 
     Attributes
@@ -248,7 +248,7 @@ class Origin:
 
 
 @dataclass(frozen=True, eq=False)
-class Made:
+class RecipeMesh:
     """What a recipe makes of a label map, in the plane of the frame.
 
     Attributes

@@ -18,6 +18,9 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import asdict
+from functools import partial
+from itertools import chain, product
+from operator import attrgetter
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -49,7 +52,7 @@ def over(first: Options, *several: Options) -> list[Options]:
 
 POISSON, SIDES = {"interior": "poisson"}, each("periodic", "x", "y", "xy")
 EVERY = [  # for every kind of image
-    {}, *each("edge_length", 4, "9px", "4%", {1: 5}), {"progress": lambda *_: None}, *each("boundary_edge_length", 3, "2px"),
+    {}, *each("edge_length", 3, "9px", "4%", {1: 5}), {"progress": lambda *_: None}, *each("boundary_edge_length", 3, "2px"),
     *over({"edge_length": lambda places: 3 + 0.1 * abs(places[:, 0])}, {}, *each("gradation", 0.08, 0.4), POISSON),
     *over({"min_edge_length": 3}, {"boundary_edge_length": 2}, {"elements_across": 3}), *each("min_angle", 0, 20, 32),
     *each("elements_across", 2, 3.5), *each("segments_per_turn", 12, 60), *each("tolerance", 0.1, "1px", 2), {"keep_area": False},
@@ -61,31 +64,19 @@ EVERY = [  # for every kind of image
 ]  # fmt: skip
 WHITE = [  # for one white zone
     *EVERY, {"invert": True}, *over({"recipe": "structured", "threshold": 90}, {}, *each("step", 5, "3%"), {"spacing": (0.5, 0.8)}),
-    *over({"recipe": "unstructured", "threshold": 90}, {}, {"n_boundary_points": 70}, {"n_interior_points": 90, "seed": 5},
-          {"min_distance": 5, "min_distance_to_boundary": "2px"}, {"edge_length": 6, "iterations": 0},
-          *each("smoothing", "none", "uniform")),
+    *over({"recipe": "unstructured", "threshold": 90}, {}, {"n_boundary_points": 70}, {"n_interior_points": 90}, {"origin": "upper"},
+          {"seed": 5}, {"min_distance": 5, "min_distance_to_boundary": "2px"}, {"iterations": 0}, *each("smoothing", "none", "cotangent")),
 ]  # fmt: skip
-LABELS = [
+LABELS: list[Options] = [
     *each("background", None, 3), {"labels": [2, 5, 7]}, {"labels": [4], "largest": True}, {"edge_length": {1: 3, 2: "8px"}},
 ]  # fmt: skip
-DATA = {
-    "femur.png": [{"edge_length": 12}, {"recipe": "unstructured"}, {"recipe": "structured"}], "femur_gray.png": each("edge_length", 12),
-    "plate.png": [{}, {"threshold": 80.5, "edge_length": 7}], "gear.png": over({"edge_length": 8}, {}, {"corners": "keep"}),
-    "blobs.png": over({"edge_length": 8}, {}, *each("max_pixels", 120_000, 119_999)), "blob_with_holes.png": [{}, {"elements_across": 2}],
-    "polycrystal.png": over({"edge_length": 9}, {"labels": True}, {"labels": range(1, 20)}),
-}  # fmt: skip
-MORE = {
-    "sag_104.png": {"labels": True}, "seg_ax_005.png": {"labels": True}, "ct16_ax_512.png": {"edge_length": 10, "min_area": "40px2"},
-    "Ti_sample24_c5restored.png": {"labels": True, "min_area": 8}, "electrode_3phase_128.png": {"labels": True, "background": None},
-    "nanomesh_segmented.png": {}, "aluminum_micro.png": {}, "mask2d.tif": {"labels": True}, "aegean_1320x960.png": {"edge_length": 12},
-    "shade.tif": {"edge_length": 16}, "Landscape_6.jpg": {"min_area": 400, "edge_length": 30}, "basn3p01.png": {"labels": True},
-}  # fmt: skip
-SOLVERS = ("vtu", "msh", "inp", "bdf", "xdmf", "vtkhdf")
+LABEL_MAPS = {"polycrystal.png", "sag_104.png", "seg_ax_005.png", "Ti_sample24_c5restored.png", "electrode_3phase_128.png", "mask2d.tif"}
+LAYERS: Options = {"height": 2.5, "layers": 2}
+PRINTED: list[Options] = [{}, {"height": 2.5}]
+SOLVED: list[Options] = [*PRINTED, LAYERS, {"order": 2}, {"order": 2} | LAYERS]
 FORMATS = [
-    *[(end, more) for end in ("stl", "ply", "obj", "off", "3mf", "glb", "vtp", *SOLVERS) for more in ({}, {"height": 2.5})],
-    *[(end, more) for end in SOLVERS for more in ({"height": 2.5, "layers": 3}, {"order": 2}, {"order": 2, "height": 2.5, "layers": 2})],
-    *[("msh", more) for more in over({"version": "2.2"}, {}, {"order": 2}, {"height": 2.5})], ("svg", {}), ("dxf", {}), ("geojson", {}),
-    *[("inp", more) for more in over({"deck": True}, {}, {"plane": "strain"}, {"order": 2}, {"height": 2.5})],
+    ("stl ply obj off 3mf glb vtp", PRINTED), ("svg dxf geojson", PRINTED[:1]), ("vtu vtkhdf msh inp bdf xdmf", SOLVED),
+    ("msh", over({"version": "2.2"}, *SOLVED)), ("inp", over({"deck": True}, *SOLVED, {"plane": "strain"})),
 ]  # fmt: skip
 COMMANDS = ("mesh data/plate.png -o - --format stl --edge-length 9", "view-report data/plate.png -o - --edge-length 9")
 METHODS: dict[str, Callable[[Any], Any]] = {
@@ -107,13 +98,17 @@ def clouds(shape: tuple[int, int], width: float, seed: int) -> Any:
     return np.pad(np.interp(values, (values.min(), values.max()), (0, 255)).astype(np.uint8), ((0, 1), (0, 1)), mode="wrap")
 
 
-def images() -> Iterator[tuple[str, Any, list[Options]]]:
-    """Yield the name of each image, its array, path, object or bytes, and the options it is meshed with."""
-    mask, gray, torus = blob(96, seed=4, holes=2), clouds((84, 96), 5, 1), clouds((70, 56), 4, 2)
+def drawn() -> Iterator[tuple[str, Any, list[Options]]]:
+    """Yield the name of each image, its array, object or bytes, and the options it is meshed with."""
+    mask, grains = np.asarray(blob(96, seed=4, holes=2)), specimens.polycrystal(96, 16, 3)  # type: ignore[no-untyped-call]
+    gray, torus = clouds((84, 96), 5, 1), clouds((70, 56), 4, 2)
     phases, lengths = torus // 86, np.linspace(3, 11, mask.size).reshape(mask.shape)
-    yield "blob", mask * np.uint8(255), [*WHITE, {"edge_length": lengths}, {"edge_length": lengths} | POISSON]
-    yield "gray", gray, [*WHITE, *each("threshold", 100, 127.5, "otsu"), {"threshold": 150, "invert": True}]
-    yield "grains", specimens.polycrystal(80, 16, 3), over({"labels": True}, *EVERY, *LABELS)
+    y, x = np.indices(mask.shape)
+    sharp = (abs(y - 86) < 0.15 * (x - 8)) & (x < 47)
+    specks = (y // 4 < 3) & (x // 4 < 3) & ((y // 4 + x // 4) % 2 == 0)  # they touch in corners
+    yield "blob", (mask | sharp | specks) * np.uint8(255), [*WHITE, {"edge_length": lengths}, {"edge_length": lengths} | POISSON]
+    yield "gray", gray, [*WHITE, *each("threshold", 100, 127.5), {"threshold": 150, "invert": True}]
+    yield "grains", np.select([sharp, specks], [17, 18], grains), over({"labels": True}, *EVERY, *LABELS)
     for name, image in specimens.ALL.items():
         first: Options = {"labels": True, "background": None} if name in specimens.LABELS else {}
         yield name, image, over(first, {}, {"edge_length": 2, "connectivity": 8, "corners": "keep"})
@@ -121,13 +116,13 @@ def images() -> Iterator[tuple[str, Any, list[Options]]]:
         yield f"turned {turn}", image, each("edge_length", 5)
     for seed in range(3):
         noise = np.random.default_rng(seed).integers(0, 2 + seed, (16, 21))
-        yield f"noise {seed}", noise, over({"labels": True}, {"background": None}, {"connectivity": 8} | POISSON, {"min_area": 3})
+        several: list[Options] = [{"background": None}, {"connectivity": 8} | POISSON, {"min_angle": 5}, {"min_area": 3}]
+        yield f"noise {seed}", noise, over({"labels": True}, *several)
     yield "torus", torus > 120, [*SIDES, *over(POISSON, *SIDES), {"periodic": "xy", "boundary_edge_length": 3}]
     yield "phases", phases, over({"labels": True, "background": None, "edge_length": 5}, *SIDES)
     yield "gray disc", specimens.gray_disc(64, 21.7, (30.3, 33.1), 20, 220), each("threshold", None, 60)
     yield "floats", gray / 255.0, each("threshold", 0.4, "otsu")
-    yield "large blob", blob(400), over({"edge_length": 8}, {}, POISSON)
-    yield "large grains", specimens.polycrystal(300, 60), over({"edge_length": 8, "labels": True}, {}, POISSON)
+    yield "large", specimens.polycrystal(300, 60), over({"edge_length": 8, "labels": True}, {}, {"background": 7} | POISSON)
     yield "colours", np.stack([phases * 80, phases * 40, 255 - phases], axis=2).astype(np.uint8), [{"labels": True}, {}]
     first_page, *others = (Image.fromarray(page) for page in (torus, torus[::-1], torus.T))
     tiff, png = io.BytesIO(), io.BytesIO()
@@ -138,17 +133,22 @@ def images() -> Iterator[tuple[str, Any, list[Options]]]:
     placed = pyvista.ImageData(dimensions=(58, 72, 1), spacing=(0.2, 0.3, 1), origin=(3, -2, 1.5))
     placed.cell_data["values"] = torus.ravel()
     yield "pyvista", placed, each("edge_length", None, 0.9)
-    yield from ((name, ROOT / "data" / name, several) for name, several in DATA.items())
+
+
+def files(more: Path | None) -> Iterator[tuple[str, Any, list[Options]]]:
+    """Yield the same for the images of `data`, and of a folder of real ones."""
+    for path in sorted((ROOT / "data").glob("*.png")):
+        first = {"labels": True} if path.name in LABEL_MAPS else {"threshold": 100}
+        several = over({"edge_length": 8}, {"tolerance": 1.5, "corners": "keep"}, {"elements_across": 3}, {"max_pixels": 120_000})
+        yield path.name, path, over(first, {}, *several, *each("recipe", "structured", "unstructured"))
+    for path in sorted(more.iterdir()) if more else ():
+        if path.suffix in (".png", ".jpg", ".tif"):
+            yield f"more/{path.name}", path, [{"edge_length": "2%", "min_area": "10px2", "labels": path.name in LABEL_MAPS}]
 
 
 def meshed(image: Any, options: Options) -> img2tri.TriangleMesh:
     """Mesh an image; bytes are a file."""
     return img2tri.mesh_image(io.BytesIO(image) if isinstance(image, bytes) else image, **options)
-
-
-def judged(mesh: img2tri.TriangleMesh) -> Options:
-    """Return the numbers of the report."""
-    return {name: value for name, value in mesh.report.to_dict().items() if name not in ("options", "settings", "warnings", "recipe")}
 
 
 def arrays(made: Any) -> Options:
@@ -165,20 +165,20 @@ def saved(save: Callable[..., Any], end: str, options: Options) -> dict[str, byt
         return {path.name: path.read_bytes() for path in Path(folder).iterdir()}
 
 
-def printed(command: str) -> bytes:
-    """Return what a command writes to stdout."""
-    return subprocess.run([sys.executable, "-m", "img2tri", *command.split()], cwd=ROOT, capture_output=True, check=True).stdout
-
-
 def digest(part: Any) -> str:
-    """Sum up a mesh, arrays as float64 or int64, whatever holds them, and plain data; the order of keys does not count."""
+    """Sum up a mesh, the numbers of a report, arrays, whatever holds them, and plain data; the order of keys does not count."""
     if isinstance(part, img2tri.TriangleMesh):
         part = [part.vertices, part.triangles, part.regions]
+    if isinstance(part, img2tri.Report):
+        words = {"options", "settings", "warnings", "recipe", "removed", "notes"}
+        part = {name: value for name, value in part.to_dict().items() if name not in words}
     if isinstance(part, dict):
         part = [(str(key), part[key]) for key in sorted(part, key=str)]
     if isinstance(part, list | tuple):
         part = ",".join(map(digest, part)).encode()
-    elif isinstance(part, np.ndarray | np.generic) and part.dtype.kind in "biuf":
+    elif isinstance(part, np.generic):
+        part = part.item()
+    elif isinstance(part, np.ndarray) and part.dtype.kind in "biuf":
         kind = np.float64 if part.dtype.kind == "f" else np.int64
         part = str(part.shape).encode() + np.ascontiguousarray(part, kind).tobytes()
     return hashlib.sha256(part if isinstance(part, bytes) else repr(part).encode()).hexdigest()
@@ -200,25 +200,26 @@ def note(lines: dict[str, str], name: str, options: Options, make: Callable[...,
 def collect(more: Path | None) -> dict[str, str]:
     """Mesh all images, judge the meshes, and put some of them through all methods and formats."""
     lines: dict[str, str] = {}
-    real = [(f"more/{name}", more / name, [options]) for name, options in MORE.items() if more and (more / name).exists()]
-    for name, image, several in [*images(), *real]:
+    for name, image, several in chain(drawn(), files(more)):
         for options in several:
             mesh = note(lines, name, options, meshed, image, options)
             if mesh is not None:
-                note(lines, f"report {name}", options, judged, mesh)
-    bone = meshed(blob(64), {"edge_length": 7, "spacing": 0.5, "units": "mm", "names": {1: "bone"}})
+                note(lines, f"report {name}", options, attrgetter("report"), mesh)
+    ring = meshed(specimens.MASKS["ring"], {"edge_length": 5, "spacing": 0.5, "units": "mm", "names": {1: "bone"}})
     grains = meshed(specimens.polycrystal(40, 5, 1), {"labels": True, "edge_length": 6, "origin": "upper", "names": {2: "a b"}})
-    torus = meshed(clouds((40, 50), 4, 2), {"threshold": 120, "periodic": "xy", "recipe": "conforming"})
-    bare = img2tri.TriangleMesh(bone.vertices.copy(), bone.triangles.copy(), bone.regions.copy())
-    for name, mesh in {"bone": bone, "grains": grains, "torus": torus, "bare": bare}.items():
+    torus = meshed(clouds((40, 50), 4, 2), {"threshold": 120, "periodic": "xy", "crop": (0, 0, 51, 41)})
+    bare = img2tri.TriangleMesh(grains.vertices, grains.triangles, grains.regions)
+    for name, mesh in {"ring": ring, "grains": grains, "torus": torus, "bare": bare}.items():
         for method, call in METHODS.items():
             note(lines, f"object {name} {method}", {}, call, mesh)
-        for end, options in FORMATS:
-            note(lines, f"format {name}.{end}", options, saved, mesh.save, end, options)
+        for ends, several in FORMATS:
+            for end, options in product(ends.split(), several):
+                note(lines, f"format {name}.{end}", options, saved, mesh.save, end, options)
         for end in ("png", "svg", "pdf"):
             note(lines, f"format {name} plot.{end}", {}, saved, mesh.plot, end, {})
     for command in COMMANDS:
-        note(lines, f"format {command}", {}, printed, command)
+        run = partial(subprocess.check_output, cwd=ROOT, stderr=subprocess.DEVNULL)
+        note(lines, f"format {command}", {}, run, [sys.executable, "-m", "img2tri", *command.split()])
     return lines
 
 
@@ -227,16 +228,17 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     for name, text in (("--write", "save the lines"), ("--compare", "print lines that differ"), ("--more", "folder of real images")):
         parser.add_argument(name, type=Path, help=text)
-    chosen, start = parser.parse_args(), time.perf_counter()
-    lines = collect(chosen.more)
-    absent = [name for name in MORE if not any(line.startswith(f"more/{name}") for line in lines)]
-    spent = time.perf_counter() - start
-    print(f"{len(lines)} lines in {spent:.0f} s, of {ROOT}; not there: {', '.join(absent) or 'none'}", file=sys.stderr)
+    chosen, start = parser.parse_args(), time.process_time()
+    more: Path | None = chosen.more if chosen.more and chosen.more.is_dir() else None
+    if more is None:
+        print("left out: real images, from the folder named by --more", file=sys.stderr)
+    lines = collect(more)
+    print(f"{len(lines)} lines in {time.process_time() - start:.0f} s, of {ROOT}", file=sys.stderr)
     if chosen.write:
         chosen.write.write_text("".join(f"{name} {total}\n" for name, total in lines.items()))
     if chosen.compare:
         before = dict(line.rsplit(" ", 1) for line in chosen.compare.read_text().splitlines())
-        before = {name: total for name, total in before.items() if not any(f"more/{image}" in name for image in absent)}
+        before = {name: total for name, total in before.items() if more or "more/" not in name}
         different = [name for name in before | lines if before.get(name) != lines.get(name)]
         print(*(f"{name}: {before.get(name)} before, {lines.get(name)} now\n" for name in different), sep="", end="")
         return int(bool(different))

@@ -1,5 +1,7 @@
-"""What a finished mesh keeps of what was promised, measured on its triangles.
+"""The certificate of a mesh: what it keeps of what was promised, measured on its triangles against the image it was made from.
 
-measures  What a certificate is made of: distances, areas, topology and defects of a mesh, measured on its triangles.
-report    The certificate: what a finished mesh keeps of what was promised, in numbers.
+report                The certificate itself, `Report`: every promise with its number, its place, and a warning where it is not kept.
+outline_distance      Hausdorff distance between outlines and mesh; pixels that lie in a wrong region.
+region_areas          Areas of regions, in the mesh and in the image; regions that lie elsewhere.
+topology_and_defects  Components, holes, neighbours; inverted or flat triangles, edges of three, vertices where a region touches itself.
 """

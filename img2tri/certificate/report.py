@@ -1,6 +1,6 @@
 """The certificate: what a finished mesh keeps of what was promised, in numbers.
 
-In: the finished mesh and its `Origin`. Out: a `Report`. Nothing is taken over from the making of the mesh: distances, areas,
+In: the finished mesh and its `Provenance`. Out: a `Report`. Nothing is taken over from the making of the mesh: distances, areas,
 topology and angles are measured on its triangles, and compared with the outlines and the pixels of the image.
 
 Lengths in a report are world units, angles degrees, areas world units squared.
@@ -15,11 +15,12 @@ from typing import Any
 
 import numpy as np
 
-from img2tri.certificate import measures as judging
-from img2tri.certificate.measures import Curves
+from img2tri.certificate.outline_distance import SegmentSet, hausdorff, wrong_pixels
+from img2tri.certificate.region_areas import displaced, region_areas, region_numbers
+from img2tri.certificate.topology_and_defects import DEFECTS, defects, neighbours, topology
 from img2tri.triangles.tools.quality_summary import measure
 from img2tri.triangles.tools.topology import curve_edges
-from img2tri.types import Floats, Frame, Ints, Origin
+from img2tri.types import Floats, Frame, Ints, Provenance
 
 PLACES = 20  # listed at most
 
@@ -106,7 +107,7 @@ class Report:
         return not self.warnings
 
 
-def certify(vertices: Floats, triangles: Ints, regions: Ints, frame: Frame, origin: Origin) -> Report:
+def certify(vertices: Floats, triangles: Ints, regions: Ints, frame: Frame, origin: Provenance) -> Report:
     """Judge a mesh by the image it was made from.
 
     Parameters
@@ -117,27 +118,27 @@ def certify(vertices: Floats, triangles: Ints, regions: Ints, frame: Frame, orig
         Where the image lies, and what the mesh is to be judged by.
     """
     plane, outlines = (vertices - frame.corner) / frame.pixel, origin.outlines
-    number, unknown = judging.numbers(regions, outlines.labels)
-    curves = Curves(plane, curve_edges(triangles, regions))
-    distance, farthest = judging.hausdorff(Curves(outlines.points, outlines.segments[0]), curves)
-    wrong = judging.wrong_pixels(plane, triangles, number, curves, origin)
+    number, unknown = region_numbers(regions, outlines.labels)
+    curves = SegmentSet(plane, curve_edges(triangles, regions))
+    distance, farthest = hausdorff(SegmentSet(outlines.points, outlines.segments[0]), curves)
+    wrong = wrong_pixels(plane, triangles, number, curves, origin)
     angle = measure(vertices, triangles, ["min_angle"])["min_angle"]
     narrow = np.flatnonzero(angle < (origin.min_angle or 0.0) - 1e-9)
     middles = vertices[triangles].mean(axis=1)
-    missing, extra = judging.neighbours(triangles, number, outlines)
+    missing, extra = neighbours(triangles, number, outlines)
     facts: dict[str, Any] = {
         "hausdorff": distance * frame.pixel,
         "hausdorff_at": _place(frame.world(farthest)),
         "tolerance": None if origin.tolerance is None else origin.tolerance * frame.pixel,
-        "areas": judging.areas(plane, triangles, number, origin, frame.pixel),
-        "displaced": judging.displaced(plane, triangles, number, origin),
-        "topology": judging.topology(triangles, number, outlines),
+        "areas": region_areas(plane, triangles, number, origin, frame.pixel),
+        "displaced": displaced(plane, triangles, number, origin),
+        "topology": topology(triangles, number, outlines),
         "unknown_labels": unknown,
         "neighbours_missing": missing,
         "neighbours_extra": extra,
         "wrong_pixels": len(wrong),
         "wrong_pixels_at": [_place(p) for p in frame.world(wrong[:PLACES])],
-        **judging.defects(vertices, triangles, regions),
+        **defects(vertices, triangles, regions),
         "smallest_angle": float(angle.min()),
         "smallest_angle_at": _place(middles[np.argmin(angle)]),
         "min_angle": origin.min_angle,
@@ -151,7 +152,7 @@ def certify(vertices: Floats, triangles: Ints, regions: Ints, frame: Frame, orig
 
 def _warnings(facts: dict[str, Any]) -> list[str]:
     """One line for each promise that is not kept."""
-    lines = [f"{name}: {facts[name]}" for name in judging.DEFECTS if facts[name]]
+    lines = [f"{name}: {facts[name]}" for name in DEFECTS if facts[name]]
     lines += [f"label {v} is in the mesh, not in the image" for v in facts["unknown_labels"]]
     lines += [
         f"label {v}: {_count(t['found'][0], 'component')} with {_count(t['found'][1], 'hole')}, "

@@ -29,7 +29,7 @@ from img2tri.paper.grid import MOST_POINTS, mask_filter, structured_grid
 from img2tri.paper.poisson_disk import DISTANCE_PER_EDGE, poisson_disk
 from img2tri.triangles.tools.laplacian_smoothing import uniform
 from img2tri.triangles.tools.topology import curve_vertices
-from img2tri.types import Frame, Made
+from img2tri.types import Frame, RecipeMesh
 
 GRID_STEP = 10  # px between the points of the paper's grid
 
@@ -220,7 +220,7 @@ def paper_mesh(
     n_interior_points: int | None = None,
     min_distance: float | str | None = None,
     min_distance_to_boundary: float | str | None = None,
-) -> Made:
+) -> RecipeMesh:
     """Mesh a label map by a recipe of the paper, each label as a white zone of its own, and put the meshes in their place.
 
     Neighbouring regions do not share vertices then: the paper knows of one white zone only.
@@ -278,7 +278,7 @@ def paper_mesh(
         vertices = uniform(vertices, triangles, iterations=iterations, fixed=mesh.fixed)
     regions = np.repeat(np.arange(1, len(values) + 1), [len(part.triangles) for part in meshes])
     counted = meshes[0].counted if len(meshes) == 1 else {str(v): part.counted for v, part in zip(values, meshes, strict=True)}
-    return Made(vertices, triangles, regions, counted)
+    return RecipeMesh(vertices, triangles, regions, counted)
 
 
 def _together(parts: list[PaperMesh]) -> PaperMesh:

@@ -30,7 +30,7 @@ from img2tri.shapes.sizes.outline_sizes import by_curvature, by_pieces, by_thick
 from img2tri.shapes.sizes.size_field import EdgeLength, Field, length_field
 from img2tri.shapes.trace.crack_edges import find_cracks
 from img2tri.shapes.trace.dual_edges import Links, pixel_areas
-from img2tri.types import Floats, Frame, Ints, Made, Outlines
+from img2tri.types import Floats, Frame, Ints, Outlines, RecipeMesh
 
 if TYPE_CHECKING:
     from img2tri.triangles.generate.constrained_delaunay import NetworkError
@@ -158,7 +158,7 @@ def conform(
     interior: str = "lattice",
     seed: int = 0,
     progress: Callable[[str, float], object] | None = None,
-) -> Made:
+) -> RecipeMesh:
     """Mesh all regions of an image, given its dense outlines; lengths in px."""
     from img2tri.triangles.generate.constrained_delaunay import NetworkError
     from img2tri.triangles.generate.strip import Slide
@@ -195,7 +195,7 @@ def conform(
     if sizes.shortest:
         first, last = coarse.pieces
         counted["below_min_edge_length"] = int((abs(coarse.places[last] - coarse.places[first]) < sizes.shortest).sum())
-    return Made(*mesh, counted)
+    return RecipeMesh(*mesh, counted)
 
 
 def _filled(

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from img2tri.arrays import Bools, Floats, Ints, Points, cross, unique_edges
-from img2tri.types import Frame, Origin, Outlines
+from img2tri.types import Frame, Outlines, Provenance
 
 REACH = 1.0  # px over the tolerance: how far from a side its outline is looked for
 LEAST = 0.1  # of the Jacobian of the straight triangle: what a curved one has at least
@@ -46,7 +46,7 @@ class SecondOrder:
     regions: Ints
 
 
-def second_order(vertices: Floats, triangles: Ints, regions: Ints, frame: Frame, origin: Origin | None = None) -> SecondOrder:
+def second_order(vertices: Floats, triangles: Ints, regions: Ints, frame: Frame, origin: Provenance | None = None) -> SecondOrder:
     """Give a mesh nodes in the middle of its edges, and curved sides along its outlines.
 
     Guarantees: the Jacobian of every element is positive everywhere, at least `LEAST` times that of the straight triangle. Where a curved

@@ -1,0 +1,60 @@
+"""How large the regions of a mesh are, and whether they lie where they do in the image: areas and first moments, region by region.
+
+In: a mesh in the plane of the frame, in pixels, with the region number of each triangle, and the areas and outlines of the image. Out:
+areas with their errors, and the labels that lie elsewhere.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from img2tri.arrays import Floats, Ints, as_complex
+from img2tri.types import Provenance
+
+
+def region_numbers(regions: Ints, labels: Ints) -> tuple[Ints, list[int]]:
+    """Region number (m,) of each triangle, 0 where the image has no such label, and these labels."""
+    at = np.minimum(np.searchsorted(labels[1:], regions) + 1, len(labels) - 1)
+    known = labels[at] == regions
+    return np.where(known, at, 0), np.unique(regions[~known]).tolist()
+
+
+def region_areas(plane: Floats, triangles: Ints, number: Ints, origin: Provenance, pixel: float) -> dict[int, dict[str, float]]:
+    """Area of each label in the mesh and in the image, in world units squared, and the relative error."""
+    found = _moments(plane, triangles, number, len(origin.areas))[0] * pixel**2
+    wanted = origin.areas * pixel**2
+    return {
+        label: {"mesh": float(found[i]), "image": float(wanted[i]), "error": float(found[i] / wanted[i] - 1)}
+        for i, label in enumerate(origin.outlines.labels.tolist())
+        if i
+    }
+
+
+def displaced(plane: Floats, triangles: Ints, number: Ints, origin: Provenance) -> list[int]:
+    """Labels that lie elsewhere than in the image, by more than outlines within the tolerance of each other explain.
+
+    An outline moved by t moves the first moment of its region about a point by t times the sum of length x distance, at most.
+    """
+    o, size = origin.outlines, len(origin.areas)
+    segments, left, right = o.segments
+    a, b = as_complex(o.points)[segments].T
+    sweep = (a.conj() * b).imag / 2
+    parts = (sweep, sweep * (a + b).real / 3, sweep * (a + b).imag / 3)
+    area, mx, my = (np.bincount(left, part, size) - np.bincount(right, part, size) for part in parts)
+    centre = (mx + 1j * my) / np.where(area, area, 1)
+    found, fx, fy = _moments(plane, triangles, number, size)
+    off = np.abs(fx + 1j * fy - found * centre)
+    reach = np.zeros(size)
+    for side in (left, right):
+        reach += np.bincount(side, np.abs(b - a) * (np.abs((a + b) / 2 - centre[side]) + 1), size)
+    limit = 2 * max(origin.tolerance or 0.0, 0.5) * reach
+    return [int(label) for label in o.labels[1:][(off > limit)[1:]]]
+
+
+def _moments(plane: Floats, triangles: Ints, number: Ints, size: int) -> tuple[Floats, Floats, Floats]:
+    """Area of each region number in the mesh, and the integrals of x and y over it."""
+    a, b, c = as_complex(plane)[triangles].T
+    area, middle = ((b - a).conj() * (c - a)).imag / 2, (a + b + c) / 3
+    parts = area, area * middle.real, area * middle.imag
+    first, second, third = (np.asarray(np.bincount(number, part, size), np.float64) for part in parts)
+    return first, second, third
