@@ -106,10 +106,10 @@ class TriangleMesh:
     @cached_property
     def periodic_pairs(self) -> dict[str, Ints]:
         """Vertices (k, 2) at the same place on opposite sides, "x": left and right, "y": bottom and top; as far as asked for."""
-        from img2tri.shapes.periodic import periodic_pairs
+        from img2tri.shapes.periodic.vertex_pairs import vertex_pairs
 
         settings = self.origin.settings if self.origin else {}
-        return periodic_pairs(self.vertices, self.frame.bounds, settings.get("periodic"))
+        return vertex_pairs(self.vertices, self.frame.bounds, settings.get("periodic"))
 
     def second_order(self) -> SecondOrder:
         """Return quadratic triangles, their sides curved along the outlines: corners, and a node in the middle of each side."""

@@ -23,7 +23,7 @@ from img2tri.raster.labels.otsu_threshold import Level
 from img2tri.raster.labels.segmentation import Segmentation, segment, without_specks
 from img2tri.raster.reading import read
 from img2tri.recipes.conforming import Sizes, conform, trace_outlines, wanted_sizes
-from img2tri.shapes.periodic import check_periodic
+from img2tri.shapes.periodic.side_labels import check_periodic
 from img2tri.shapes.polygons import enclosed_areas
 from img2tri.shapes.trace.dual_edges import pixel_areas, pixels_beside
 from img2tri.types import Outlines, Picture, Provenance, RecipeMesh
@@ -82,17 +82,17 @@ def mesh_image(image: Any, *, progress: Callable[[str, float], None] | None = No
     check_periodic(o["periodic"], zones.labels, recipe=o["recipe"], smoothing=o["smoothing"])
 
     tell("outlines", 0.2)
-    outlines, links = trace_outlines(zones, frame, connectivity=o["connectivity"], **of(OutlineOptions, o))
+    outlines, dual_edges = trace_outlines(zones, frame, connectivity=o["connectivity"], **of(OutlineOptions, o))
     _check_found(outlines, zones, o, removed["pixels"])
 
     tell("points", 0.3)
     within = frame.length("tolerance", o["tolerance"]) / frame.pixel
-    sizes = wanted_sizes(labels=zones.labels, links=links, frame=frame, **of(SizeOptions, o))
+    sizes = wanted_sizes(labels=zones.labels, dual_edges=dual_edges, frame=frame, **of(SizeOptions, o))
     if o["recipe"] == "conforming":
         # Smoothing with a free boundary gets half of what outlines and mesh may differ by.
         spent = within / 2 if o["smoothing"] == "cotangent" else within
         made = conform(
-            outlines, links, sizes, corners=o["corners"], periodic=o["periodic"], tolerance=spent, progress=tell, **of(FillOptions, o)
+            outlines, dual_edges, sizes, corners=o["corners"], periodic=o["periodic"], tolerance=spent, progress=tell, **of(FillOptions, o)
         )  # fmt: skip
     else:
         made = _paper(zones, picture, sizes, o)
@@ -101,8 +101,8 @@ def mesh_image(image: Any, *, progress: Callable[[str, float], None] | None = No
     mesh = TriangleMesh(
         frame.world(made.vertices), made.triangles, outlines.labels[made.regions], frame, o["names"] or {},
         Provenance(
-            o["recipe"], kept, kept | _chosen(o, picture, zones, sizes, within), outlines, *pixels_beside(links),
-            areas=pixel_areas(links) if zones.gray is None else enclosed_areas(outlines),  # gray values may place the outlines
+            o["recipe"], kept, kept | _chosen(o, picture, zones, sizes, within), outlines, *pixels_beside(dual_edges),
+            areas=pixel_areas(dual_edges) if zones.gray is None else enclosed_areas(outlines),  # gray values may place the outlines
             counted={**made.counted, "removed": removed},
             tolerance=within if o["recipe"] == "conforming" else None, min_angle=o["min_angle"] if o["recipe"] == "conforming" else None,
         ),

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from img2tri.arrays import Bools as Bools  # their home is arrays
+from img2tri.arrays import ChainIndex
 from img2tri.arrays import Floats as Floats
 from img2tri.arrays import Ints as Ints
 from img2tri.errors import ParameterError, finite, shown
@@ -182,10 +183,8 @@ class Outlines:
     ----------
     points
         (n, 2) float64, in the plane (see `Frame.plane`) or the world; each appears once.
-    indices
-        (k,) int64, the points of all chains one after the other, ends included. A ring repeats its first point.
-    starts
-        (c + 1,) int64: chain i is ``indices[starts[i]:starts[i + 1]]``.
+    chains
+        The points of each chain.
     left, right
         (c,) int64, the numbers of the regions on either side; 0 is what is not meshed, inside or outside of the image.
     labels
@@ -193,8 +192,7 @@ class Outlines:
     """
 
     points: Floats
-    indices: Ints
-    starts: Ints
+    chains: ChainIndex
     left: Ints
     right: Ints
     labels: Ints
@@ -202,11 +200,9 @@ class Outlines:
     @property
     def segments(self) -> tuple[Ints, Ints, Ints]:
         """All segments (s, 2) of all chains in order, and the region numbers (s,) on their left and right."""
-        inside = np.ones(len(self.indices), bool)
-        inside[self.starts[1:] - 1] = False
-        first = np.flatnonzero(inside)
-        chain = np.repeat(np.arange(len(self.left)), np.diff(self.starts) - 1)
-        return np.stack([self.indices[first], self.indices[first + 1]], axis=1), self.left[chain], self.right[chain]
+        head = self.chains.heads
+        indices, chain = self.chains.indices, self.chains.chain[head]
+        return np.stack([indices[head], indices[head + 1]], axis=1), self.left[chain], self.right[chain]
 
 
 @dataclass(frozen=True, eq=False)

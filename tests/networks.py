@@ -13,7 +13,7 @@ def ring(n, radius, centre=(0.0, 0.0)):
 
 
 def network(*rings):
-    """Rings given as (points, region inside, region outside), all counter-clockwise."""
+    """RegionRings given as (points, region inside, region outside), all counter-clockwise."""
     points, segments, left, right = [], [], [], []
     for p, inside, outside in rings:
         i = np.arange(len(p))

@@ -9,14 +9,14 @@ import shapely
 import specimens
 
 from img2tri import mesh_image
-from img2tri.shapes.place.placement import place
+from img2tri.shapes.place.placement import place_outlines
 from img2tri.shapes.polygons import region_polygons
-from img2tri.shapes.trace.crack_edges import find_cracks
+from img2tri.shapes.trace.crack_edges import find_crack_edges
 from img2tri.types import Frame
 
 
 def dense_points(labels, **options):
-    return place(find_cracks(labels), Frame(labels.shape), **options)[0].points
+    return place_outlines(find_crack_edges(labels), Frame(labels.shape), **options)[0].points
 
 
 def rms(values):
@@ -194,8 +194,8 @@ def test_a_sharp_tip_is_blunted_or_kept_and_told():
         assert blunt.report.kept
         # Kept, every corner of the outline is a vertex, and the report tells of the angles there and of no other ones.
         oracles.check_valid(sharp.vertices, sharp.triangles)
-        outlines, links = place(find_cracks(labels), Frame(labels.shape))
-        corners = outlines.points[links.corner]
+        outlines, dual_edges = place_outlines(find_crack_edges(labels), Frame(labels.shape))
+        corners = outlines.points[dual_edges.is_corner]
         assert all(np.hypot(*(sharp.vertices - corner).T).min() < 1e-9 for corner in corners)
         least = oracles.angles(sharp.vertices, sharp.triangles).min(axis=1)
         report, narrow = sharp.report, least < 32 - 1e-6
@@ -260,5 +260,5 @@ def test_smooth_and_pixel_outlines_enclose_the_same():
     for label in np.unique(labels):
         one, other = (oracles.areas(m.vertices, m.triangles[m.regions == label]).sum() for m in by_outline.values())
         assert one == pytest.approx(other, rel=0.01)
-    dense = region_polygons(place(find_cracks(labels), Frame(labels.shape))[0])
+    dense = region_polygons(place_outlines(find_crack_edges(labels), Frame(labels.shape))[0])
     assert [p.area for p in dense.values()] == pytest.approx([(labels == label).sum() for label in dense], rel=1e-9)

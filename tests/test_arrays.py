@@ -29,7 +29,9 @@ def test_rows_and_complex_numbers_are_each_others_inverse(rows):
 
 
 def test_the_cross_product_tells_left_from_right():
-    assert cross(np.array([2 + 0j, 1j]), np.array([3j, 1 + 0j])).tolist() == [6, -1]
+    a, b = np.array([1 + 0j, 3 + 4j, 2 + 1j]), np.array([0 + 1j, 3 + 4j, 1 - 1j])
+    assert cross(a, b).tolist() == [1, 0, -3]
+    assert cross(b, a).tolist() == [-1, 0, 3]
 
 
 def test_chains_know_their_ends_and_segments():

@@ -9,7 +9,7 @@ import specimens
 
 from img2tri import mesh_image
 from img2tri.errors import ImageError, MeshError, ParameterError
-from img2tri.shapes.periodic import periodic_pairs
+from img2tri.shapes.periodic.vertex_pairs import vertex_pairs
 
 
 def wrapped(labels):
@@ -193,4 +193,4 @@ def test_what_does_not_go_with_it_is_an_error():
 def test_vertices_without_a_twin_are_an_error():
     corners = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 0.5]])
     with pytest.raises(MeshError, match="periodic: expected the same places on opposite sides"):
-        periodic_pairs(corners, (0, 0, 1, 1), "x")
+        vertex_pairs(corners, (0, 0, 1, 1), "x")

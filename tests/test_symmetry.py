@@ -9,9 +9,9 @@ import specimens
 from scipy.spatial import cKDTree
 
 from img2tri import mesh_image
-from img2tri.shapes.place.placement import place, place_on_sides
+from img2tri.shapes.place.placement import place_on_pixel_sides, place_outlines
 from img2tri.shapes.polygons import region_polygons
-from img2tri.shapes.trace.crack_edges import find_cracks
+from img2tri.shapes.trace.crack_edges import find_crack_edges
 from img2tri.types import Frame
 
 SHAPES = specimens.ALL | {
@@ -24,8 +24,10 @@ SHAPES = specimens.ALL | {
 
 
 def dense(labels, on_sides=False, **options):
-    cracks = find_cracks(labels, background=options.pop("background", 0), connectivity=options.pop("connectivity", 4))
-    return (place_on_sides(cracks, Frame(labels.shape)) if on_sides else place(cracks, Frame(labels.shape), **options))[0]
+    crack_edges = find_crack_edges(labels, background=options.pop("background", 0), connectivity=options.pop("connectivity", 4))
+    return (
+        place_on_pixel_sides(crack_edges, Frame(labels.shape)) if on_sides else place_outlines(crack_edges, Frame(labels.shape), **options)
+    )[0]
 
 
 def turned_points_differ_by(labels, turns=8, **options):
@@ -111,14 +113,14 @@ def test_a_mesh_scales_with_its_pixels(name):
 def test_outlines_in_the_plane_depend_on_the_shape_of_pixels_only(spacing):
     labels = SHAPES["polygons"]
     frames = [Frame(labels.shape, spacing=tuple(k * s for s in spacing), corner=(k, -k)) for k in (1.0, 4.0, 0.5)]
-    first, *others = (place(find_cracks(labels), frame)[0].points for frame in frames)
+    first, *others = (place_outlines(find_crack_edges(labels), frame)[0].points for frame in frames)
     assert all(np.array_equal(first, points) for points in others)
 
 
 def test_pixels_twice_as_wide_are_the_turned_image_of_pixels_twice_as_high():
     labels = SHAPES["ellipse"]
-    wide = place(find_cracks(labels), Frame(labels.shape, spacing=(2.0, 1.0)))[0].points
-    high = place(find_cracks(np.rot90(labels)), Frame(labels.shape[::-1], spacing=(1.0, 2.0)))[0].points
+    wide = place_outlines(find_crack_edges(labels), Frame(labels.shape, spacing=(2.0, 1.0)))[0].points
+    high = place_outlines(find_crack_edges(np.rot90(labels)), Frame(labels.shape[::-1], spacing=(1.0, 2.0)))[0].points
     back = np.stack([high[:, 1], labels.shape[0] - high[:, 0]], axis=1)
     assert cKDTree(wide).query(back)[0].max() < 1e-9
 

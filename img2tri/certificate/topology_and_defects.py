@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from img2tri.arrays import Floats, Ints, as_complex, cross, unique_edges
-from img2tri.shapes.polygons import rings
+from img2tri.shapes.polygons import region_rings
 from img2tri.triangles.tools.topology import boundary_edges
 from img2tri.types import Outlines
 
@@ -19,7 +19,7 @@ def topology(triangles: Ints, number: Ints, outlines: Outlines) -> dict[int, dic
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import connected_components
 
-    r, size = rings(outlines), len(outlines.labels)
+    r, size = region_rings(outlines), len(outlines.labels)
     outer = np.bincount(r.regions[r.areas > 0], minlength=size)
     inner = np.bincount(r.regions[r.areas <= 0], minlength=size)
     # Euler: components - holes = vertices - edges + triangles, region by region; an edge or vertex counts for each region it has.

@@ -1,6 +1,6 @@
 """The conforming recipe: label map -> outlines -> points -> triangles, every region with its own outline.
 
-Outlines are made first, as fine as the pixels; then coarsened to the wanted spacing, kept clear of each other; then filled.
+Outlines are made first, as fine as the pixels; then simplified to the wanted spacing, kept clear of each other; then filled.
 Where a triangle comes out with too small an angle, the outlines there are made finer, and the mesh is made again: at the
 end of this road all outlines run through the middles between pixels, where they turn by right angles at most.
 """
@@ -16,29 +16,29 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from img2tri.arrays import Floats, Ints, Points, as_complex, as_rows
 from img2tri.errors import ParameterError
 from img2tri.raster.labels.segmentation import Segmentation
-from img2tri.shapes.periodic import FILLINGS, Twins, find_twins
-from img2tri.shapes.place.padded_chains import Points
-from img2tri.shapes.place.placement import place, place_on_sides
-from img2tri.shapes.simplify.area_preservation import area_error, keep_areas
-from img2tri.shapes.simplify.simplification import Draft, draft, remembered
-from img2tri.shapes.simplify.tangential_relocation import rooms, slid
-from img2tri.shapes.simplify.tolerance import refine
-from img2tri.shapes.simplify.vertex_offsets import fitted
-from img2tri.shapes.sizes.outline_sizes import by_curvature, by_pieces, by_thickness, limit_growth
-from img2tri.shapes.sizes.size_field import EdgeLength, Field, length_field
-from img2tri.shapes.trace.crack_edges import find_cracks
-from img2tri.shapes.trace.dual_edges import Links, pixel_areas
-from img2tri.types import Floats, Frame, Ints, Outlines, RecipeMesh
+from img2tri.shapes.periodic.pairs import FILLINGS, PeriodicPairs, find_periodic_pairs
+from img2tri.shapes.place.placement import place_on_pixel_sides, place_outlines
+from img2tri.shapes.simplify.area_preservation import area_error, preserve_areas
+from img2tri.shapes.simplify.simplification import Simplification, space_evenly
+from img2tri.shapes.simplify.tangential_relocation import relocate, slide_limits
+from img2tri.shapes.simplify.tolerance import split_near
+from img2tri.shapes.simplify.vertex_offsets import offset_vertices
+from img2tri.shapes.sizes.outline_sizes import by_chords, by_curvature, by_thickness, limit_growth
+from img2tri.shapes.sizes.size_field import EdgeLength, SizeField, size_field
+from img2tri.shapes.trace.crack_edges import find_crack_edges
+from img2tri.shapes.trace.dual_edges import DualEdges, pixel_areas
+from img2tri.types import Frame, Outlines, RecipeMesh
 
 if TYPE_CHECKING:
     from img2tri.triangles.generate.constrained_delaunay import NetworkError
     from img2tri.triangles.generate.strip import Slide
 
-AREA_ERROR = 1e-4  # relative, of a region: above it breaks are moved for its sake
+AREA_ERROR = 1e-4  # relative, of a region: above it vertices are offset for its sake
 USUAL_TRIANGLES = 2000  # what the default edge length aims at
-RESPACINGS = 2  # how often outlines are spaced anew around places that need shorter pieces
+RESPACINGS = 2  # how often outlines are spaced anew around places that need shorter chords
 MOST_TRIANGLES = 100_000_000  # some 2 GB of mesh, and several times that on the way
 LEAST_PIECE = 1e-3  # px; outlines are never cut so fine, so that this is as good as 0
 WAY_BACK = 0.7  # px: no point is farther from the middle of its link, or of its block
@@ -48,7 +48,7 @@ ATTEMPTS = 12  # rounds of refining the outlines; two are the most that ordinary
 
 def trace_outlines(
     zones: Segmentation, frame: Frame, *, connectivity: int = 4, corners: str = "auto", outline: str = "smooth", periodic: str | None = None
-) -> tuple[Outlines, Links]:
+) -> tuple[Outlines, DualEdges]:
     """Trace the outlines of all regions of a label map, as fine as the pixels.
 
     Parameters
@@ -66,11 +66,11 @@ def trace_outlines(
     periodic
         "x", "y" or "xy": the points on these opposite sides are put at the same places; see `img2tri.shapes.periodic`.
     """
-    cracks = find_cracks(zones.labels, background=zones.background, upward=frame.upward, connectivity=connectivity)
+    crack_edges = find_crack_edges(zones.labels, background=zones.background, upward=frame.upward, connectivity=connectivity)
     if outline == "pixel":
-        return place_on_sides(cracks, frame)
-    outlines, links = place(cracks, frame, gray=zones.gray, level=zones.level, corners=corners != "round")
-    return find_twins(outlines, links, periodic).alike(outlines), links
+        return place_on_pixel_sides(crack_edges, frame)
+    outlines, dual_edges = place_outlines(crack_edges, frame, gray=zones.gray, level=zones.level, corners=corners != "round")
+    return find_periodic_pairs(outlines, dual_edges, periodic).alike(outlines), dual_edges
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +96,7 @@ class Sizes:
     """
 
     longest: float
-    field: Field | None = None
+    field: SizeField | None = None
     boundary: float | None = None
     elements_across: float | None = None
     segments_per_turn: float | None = None
@@ -107,7 +107,7 @@ class Sizes:
 def wanted_sizes(
     edge_length: EdgeLength | None,
     labels: NDArray[Any],
-    links: Links,
+    dual_edges: DualEdges,
     frame: Frame,
     *,
     gradation: float = 0.17,
@@ -121,10 +121,10 @@ def wanted_sizes(
     Equilateral triangles of the default length fill the regions about `USUAL_TRIANGLES` times.
     """
     if edge_length is None:
-        longest, field = max(4.0, math.sqrt(pixel_areas(links)[1:].sum() / USUAL_TRIANGLES * 4 / math.sqrt(3))), None
+        longest, field = max(4.0, math.sqrt(pixel_areas(dual_edges)[1:].sum() / USUAL_TRIANGLES * 4 / math.sqrt(3))), None
     else:
-        longest, field = length_field(edge_length, frame, labels, gradation=gradation)
-        _check_number(longest, field, float(pixel_areas(links)[1:].sum()), frame)
+        longest, field = size_field(edge_length, frame, labels, gradation=gradation)
+        _check_number(longest, field, float(pixel_areas(dual_edges)[1:].sum()), frame)
     return Sizes(
         longest,
         field,
@@ -136,7 +136,7 @@ def wanted_sizes(
     )
 
 
-def _check_number(longest: float, field: Field | None, area: float, frame: Frame) -> None:
+def _check_number(longest: float, field: SizeField | None, area: float, frame: Frame) -> None:
     """Refuse lengths that would take more triangles than there is memory for, before any of it is used."""
     lengths = np.clip(longest if field is None else field.grid, 1e-100, 1e100)
     number = 4 / math.sqrt(3) * float((1 / lengths**2).mean()) * (area if field is None else field.grid.size * field.cell**2)
@@ -147,7 +147,7 @@ def _check_number(longest: float, field: Field | None, area: float, frame: Frame
 
 def conform(
     outlines: Outlines,
-    links: Links,
+    dual_edges: DualEdges,
     sizes: Sizes,
     *,
     tolerance: float = 0.5,
@@ -166,23 +166,25 @@ def conform(
     tell = progress or (lambda *_: None)
     count = len(outlines.left)
     tell("spacing" if count < CONFETTI else f"spacing {count:,} outlines; min_area would drop specks", 0.3)
-    twins = find_twins(outlines, links, periodic)
-    coarse = _spaced(outlines, links, twins, sizes, tolerance, corners == "keep", keep_area)
+    pairs = find_periodic_pairs(outlines, dual_edges, periodic)
+    coarse = _spaced(outlines, dual_edges, pairs, sizes, tolerance, corners == "keep", keep_area)
     if keep_area and area_error(coarse) > AREA_ERROR:
-        coarse = twins.settle(keep_areas(coarse, tolerance=tolerance), tolerance=tolerance)
+        coarse = pairs.enforce_tolerance(preserve_areas(coarse, tolerance=tolerance), tolerance=tolerance)
     yielding, began = tolerance, 0
     for attempt in range(ATTEMPTS):
         tell("triangles", 1 - 0.6 * 0.7**attempt)
         slide = None
         if interior == "lattice":
-            slide = Slide(rooms(coarse, shortest=sizes.shortest), partial(slid, coarse, tolerance=tolerance, keep_area=keep_area))
-        mesh, chains, doubtful = _filled(coarse, twins, sizes, slide, min_angle=min_angle, seed=seed)
+            slide = Slide(
+                slide_limits(coarse, shortest=sizes.shortest), partial(relocate, coarse, tolerance=tolerance, keep_area=keep_area)
+            )
+        mesh, chains, doubtful = _filled(coarse, pairs, sizes, slide, min_angle=min_angle, seed=seed)
         if not len(doubtful) or attempt + 1 == ATTEMPTS:
             break
         before = coarse
-        coarse = refine(coarse, doubtful[:, 0] + 1j * doubtful[:, 1], within=1.0 + 0.5 * (attempt - began), tolerance=yielding)
-        coarse = twins.settle(coarse, tolerance=tolerance)
-        same = (coarse.breaks == before.breaks).all() and (coarse.moved == before.moved).all()
+        coarse = split_near(coarse, as_complex(doubtful), within=1.0 + 0.5 * (attempt - began), tolerance=yielding)
+        coarse = pairs.enforce_tolerance(coarse, tolerance=tolerance, passed=before)
+        same = (coarse.kept == before.kept).all() and (coarse.offset == before.offset).all()
         if same and yielding >= WAY_BACK:
             break
         if same or attempt + 1 == ATTEMPTS // 2:
@@ -190,21 +192,21 @@ def conform(
             yielding, began = max(tolerance, WAY_BACK), attempt + 1
     if isinstance(mesh, NetworkError):
         raise mesh
-    twins.check(chains, mesh[0])
-    counted = {"rounds": attempt + 1, "reset": int(coarse.reset.sum())}
+    pairs.check(chains, mesh[0])
+    counted = {"rounds": attempt + 1, "reset": int(coarse.snapped.sum())}
     if sizes.shortest:
-        first, last = coarse.pieces
+        first, last = coarse.chords
         counted["below_min_edge_length"] = int((abs(coarse.places[last] - coarse.places[first]) < sizes.shortest).sum())
     return RecipeMesh(*mesh, counted)
 
 
 def _filled(
-    coarse: Draft, twins: Twins, sizes: Sizes, slide: Slide | None, *, min_angle: float, seed: int
+    coarse: Simplification, pairs: PeriodicPairs, sizes: Sizes, slide: Slide | None, *, min_angle: float, seed: int
 ) -> tuple[tuple[Floats, Ints, Ints] | NetworkError, Outlines, Floats]:
     """Fill coarse outlines, with a lattice if their points may slide, else with scattered points.
 
-    Return vertices, triangles and regions, or why there are none; the outlines, twins divided alike; and places (k, 2) where these are
-    at fault: at the corners of triangles with too small an angle, or where no mesh could be made.
+    Return vertices, triangles and regions, or why there are none; the outlines, opposite sides divided alike; and places (k, 2) where
+    these are at fault: at the corners of triangles with too small an angle, or where no mesh could be made.
     """
     from img2tri.recipes.poisson_interior import scattered
     from img2tri.triangles.generate.constrained_delaunay import NetworkError
@@ -222,7 +224,7 @@ def _filled(
                     chains.points, segments, left, right, edge_length=sizes.longest, min_angle=min_angle,
                     gradation=sizes.gradation, size=sizes.field, slide=slide, seed=seed,
                 )  # fmt: skip
-            filled, chains = chains, twins.divided(chains, mesh[0])
+            filled, chains = chains, pairs.divided_alike(chains, mesh[0])
             if chains is filled:
                 break
     except NetworkError as error:
@@ -232,23 +234,25 @@ def _filled(
     return mesh, chains, vertices[triangles[sharp]].reshape(-1, 2)
 
 
-def _spaced(outlines: Outlines, links: Links, twins: Twins, sizes: Sizes, tolerance: float, keep_corners: bool, keep_area: bool) -> Draft:
-    """Coarsen the outlines to the lengths wanted, spaced evenly.
+def _spaced(
+    outlines: Outlines, dual_edges: DualEdges, pairs: PeriodicPairs, sizes: Sizes, tolerance: float, keep_corners: bool, keep_area: bool
+) -> Simplification:
+    """Simplify the outlines to the lengths wanted, spaced evenly.
 
-    A first coarsening shows where pieces have to be shorter than wanted; a second, and if need be a third, spaces them evenly
+    A first simplification shows where chords have to be shorter than wanted; a second, and if need be a third, spaces them evenly
     around these places.
     """
-    z = (outlines.points[:, 0] + 1j * outlines.points[:, 1])[outlines.indices]
-    wanted = twins.shared(limit_growth(_wanted(z, links, sizes), z, links, sizes.gradation))
+    z = as_complex(outlines.points)[outlines.chains.indices]
+    wanted = pairs.shared(limit_growth(_wanted(z, dual_edges, sizes), z, outlines.chains, sizes.gradation))
 
-    def spaced(known: Draft | None) -> Draft:
-        new = draft(outlines, links, spacing=wanted, keep_corners=keep_corners)
-        new = fitted(new, tolerance=tolerance, keep_area=keep_area)
-        return twins.settle(new if known is None or len(twins.one) else remembered(new, known), tolerance=tolerance)
+    def spaced(known: Simplification | None) -> Simplification:
+        new = space_evenly(outlines, dual_edges, spacing=wanted, keep_corners=keep_corners)
+        new = offset_vertices(new, tolerance=tolerance, keep_area=keep_area)
+        return pairs.enforce_tolerance(new, tolerance=tolerance, passed=None if len(pairs.one) else known)
 
     coarse = spaced(None)
     for _ in range(RESPACINGS):
-        shorter = twins.shared(limit_growth(by_pieces(coarse, wanted), z, links, sizes.gradation))
+        shorter = pairs.shared(limit_growth(by_chords(coarse, wanted), z, outlines.chains, sizes.gradation))
         if (shorter > 0.99 * wanted).all():
             break
         wanted = shorter
@@ -256,14 +260,14 @@ def _spaced(outlines: Outlines, links: Links, twins: Twins, sizes: Sizes, tolera
     return coarse
 
 
-def _wanted(z: Points, links: Links, sizes: Sizes) -> Floats:
+def _wanted(z: Points, dual_edges: DualEdges, sizes: Sizes) -> Floats:
     """Lengths wanted at the dense points of the outlines, before their growth is limited."""
     longest = sizes.longest if sizes.boundary is None else min(sizes.longest, sizes.boundary)
     wanted = np.full(len(z), longest)
     if sizes.field is not None:
-        wanted = np.minimum(wanted, sizes.field(np.stack([z.real, z.imag], axis=1)))
+        wanted = np.minimum(wanted, sizes.field(as_rows(z)))
     if sizes.elements_across is not None:
-        wanted = np.minimum(wanted, by_thickness(z, links, longest, sizes.elements_across))
+        wanted = np.minimum(wanted, by_thickness(z, dual_edges, longest, sizes.elements_across))
     if sizes.segments_per_turn is not None:
-        wanted = np.minimum(wanted, by_curvature(z, links, longest, sizes.segments_per_turn))
+        wanted = np.minimum(wanted, by_curvature(z, dual_edges.chains, longest, sizes.segments_per_turn))
     return np.asarray(np.maximum(wanted, max(sizes.shortest, LEAST_PIECE)))

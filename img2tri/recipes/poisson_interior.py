@@ -13,7 +13,7 @@ from collections.abc import Callable
 import numpy as np
 
 from img2tri.paper.poisson_disk import DISTANCE_PER_EDGE, poisson_disk
-from img2tri.shapes.polygons import polygons
+from img2tri.shapes.polygons import component_polygons
 from img2tri.triangles.generate.constrained_delaunay import refine
 from img2tri.types import Bools, Floats, Ints, Outlines
 
@@ -48,7 +48,7 @@ def scattered(
     near = DISTANCE_PER_EDGE * least
     inside = [
         poisson_disk(part, chains.points, min_distance=near, min_distance_to_boundary=near, seed=seed + i)
-        for i, part in enumerate(polygons(chains)[1])
+        for i, part in enumerate(component_polygons(chains)[1])
     ]
     points = np.concatenate(inside)
     if field is not None and len(points):

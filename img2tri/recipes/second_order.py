@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from img2tri.arrays import Bools, Floats, Ints, Points, cross, unique_edges
+from img2tri.arrays import Bools, Floats, Ints, Points, as_complex, cross, unique_edges
 from img2tri.types import Frame, Outlines, Provenance
 
 REACH = 1.0  # px over the tolerance: how far from a side its outline is looked for
@@ -175,8 +175,8 @@ class _Curves:
     def __init__(self, outlines: Outlines, reach: float) -> None:
         from scipy.spatial import cKDTree
 
-        self._z = (outlines.points[:, 0] + 1j * outlines.points[:, 1])[outlines.indices]
-        self._chain = np.repeat(np.arange(len(outlines.left)), np.diff(outlines.starts))
+        self._z = as_complex(outlines.points)[outlines.chains.indices]
+        self._chain = outlines.chains.chain
         self._inner = np.append(self._chain[1:] == self._chain[:-1], False)
         self._left, self._right, self._reach = outlines.left, outlines.right, reach
         step = np.abs(np.diff(self._z))[self._inner[:-1]].max(initial=0.0)

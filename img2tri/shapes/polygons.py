@@ -12,16 +12,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from img2tri.shapes.trace.chains import walk
-from img2tri.types import Floats, Ints, Outlines
+from img2tri.arrays import Floats, Ints, runs
+from img2tri.shapes.trace.chains import follow
+from img2tri.types import Outlines
 
 if TYPE_CHECKING:
     from shapely import MultiPolygon, Polygon
 
 
 @dataclass(frozen=True, eq=False)
-class Rings:
-    """The rings around all regions.
+class RegionRings:
+    """The rings around all regions, each along the chains of its region.
 
     Attributes
     ----------
@@ -41,13 +42,13 @@ class Rings:
     areas: Floats
 
 
-def rings(outlines: Outlines) -> Rings:
+def region_rings(outlines: Outlines) -> RegionRings:
     """Join chains into the rings around the regions."""
     o, n = outlines, len(outlines.left)
-    size = np.diff(o.starts)
+    size = np.diff(o.chains.starts)
     # Each chain is walked twice: forwards by the region on its left (0..n-1), backwards by the one on its right (n..2n-1).
     region = np.concatenate([o.left, o.right])
-    first, last = o.indices[o.starts[:-1]], o.indices[o.starts[1:] - 1]
+    first, last = o.chains.ends
     begin, end = np.concatenate([first, last]), np.concatenate([last, first])
     meshed = np.flatnonzero(region != 0)
     # At a node a region has one chain that comes in and one that goes out.
@@ -55,27 +56,26 @@ def rings(outlines: Outlines) -> Rings:
     arrives, departs = end * (key.max(initial=0) + 1) + key[: 2 * n], begin * (key.max(initial=0) + 1) + key[: 2 * n]
     order = meshed[np.argsort(departs[meshed], kind="stable")]
     successor = np.searchsorted(meshed, order[np.searchsorted(departs[order], arrives[meshed])])
-    chains = walk(successor.astype(np.int64))
+    around = follow(successor.astype(np.int64))
 
-    walked = meshed[chains.order]
+    walked = meshed[around.order]
     chain, back = walked % n if n else walked, walked >= n
     # All points of a chain but the one the next chain begins with; the ring's own first point is put back at the end.
     count = size[chain] - 1
-    which = np.repeat(np.arange(len(chain)), count)
-    step = np.arange(len(which)) - np.repeat(np.cumsum(count) - count, count)
-    entry = np.where(back[which], o.starts[chain + 1][which] - 1 - step, o.starts[chain][which] + step)
-    ends = np.concatenate([[0], np.cumsum(count)])[chains.starts]
-    points = np.insert(o.points[o.indices[entry]], ends[1:], o.points[o.indices[entry[ends[:-1]]]], axis=0)
+    which, step = runs(count)
+    entry = np.where(back[which], o.chains.last[chain][which] - step, o.chains.first[chain][which] + step)
+    ends = np.concatenate([[0], np.cumsum(count)])[around.starts]
+    points = np.insert(o.points[o.chains.indices[entry]], ends[1:], o.points[o.chains.indices[entry[ends[:-1]]]], axis=0)
     starts = ends + np.arange(len(ends))
     x, y = (points - points.mean(axis=0, keepdims=True)).T if len(points) else (np.zeros(0), np.zeros(0))
     sweep = np.zeros(len(points))
     sweep[:-1] = (x[:-1] * y[1:] - x[1:] * y[:-1]) / 2
     sweep[starts[1:] - 1] = 0
     areas = np.add.reduceat(sweep, starts[:-1]) if len(starts) > 1 else np.zeros(0)
-    return Rings(points, starts, region[walked[chains.starts[:-1]]], areas)
+    return RegionRings(points, starts, region[walked[around.starts[:-1]]], areas)
 
 
-def polygons(outlines: Outlines) -> tuple[Ints, NDArray[Any]]:
+def component_polygons(outlines: Outlines) -> tuple[Ints, NDArray[Any]]:
     """Return the components of all regions as shapely polygons.
 
     Returns
@@ -87,8 +87,8 @@ def polygons(outlines: Outlines) -> tuple[Ints, NDArray[Any]]:
     """
     import shapely
 
-    r = rings(outlines)
-    index = np.repeat(np.arange(len(r.regions)), np.diff(r.starts))
+    r = region_rings(outlines)
+    index = runs(np.diff(r.starts))[0]
     lines = shapely.linearrings(r.points, indices=index)
     outer, inner = np.flatnonzero(r.areas > 0), np.flatnonzero(r.areas <= 0)
     shells = shapely.polygons(lines[outer])
@@ -107,7 +107,7 @@ def polygons(outlines: Outlines) -> tuple[Ints, NDArray[Any]]:
 
 def enclosed_areas(outlines: Outlines) -> Floats:
     """Return the area (r,) each region number has within its outlines; entry 0 is 0."""
-    r = rings(outlines)
+    r = region_rings(outlines)
     return np.asarray(np.bincount(r.regions, r.areas, len(outlines.labels)), np.float64)
 
 
@@ -115,7 +115,7 @@ def region_polygons(outlines: Outlines) -> dict[int, Polygon | MultiPolygon]:
     """Return one polygon, or multi-polygon, for each region, by ascending label."""
     import shapely
 
-    regions, parts = polygons(outlines)
+    regions, parts = component_polygons(outlines)
     result: dict[int, Polygon | MultiPolygon] = {}
     for value in np.unique(regions).tolist():
         mine = parts[regions == value]

@@ -74,7 +74,7 @@ def covered(vertices, triangles, shape):
 
 
 def outlines(mask, h):
-    """Rings of points, about h apart, y up; and a polygon that knows the inside."""
+    """RegionRings of points, about h apart, y up; and a polygon that knows the inside."""
     import contourpy
 
     soft = cv2.GaussianBlur(np.pad(mask, 4).astype(np.float32), (0, 0), 1)

@@ -15,8 +15,8 @@ from img2tri.types import Frame
 
 
 def check(labels, *, background=0, edge_length=8.0):
-    outlines, links = trace_outlines(Segmentation(labels, background), Frame(labels.shape))
-    made = conform(outlines, links, Sizes(edge_length))
+    outlines, dual_edges = trace_outlines(Segmentation(labels, background), Frame(labels.shape))
+    made = conform(outlines, dual_edges, Sizes(edge_length))
     regions = outlines.labels[made.regions]
     oracles.check_valid(made.vertices, made.triangles)
     assert oracles.angles(made.vertices, made.triangles).min() >= 30 - 1e-6

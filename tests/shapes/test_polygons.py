@@ -11,21 +11,21 @@ import strategies
 from hypothesis import given
 from strategies import QUICK
 
-from img2tri.shapes.polygons import enclosed_areas, polygons, region_polygons, rings
-from img2tri.shapes.trace.crack_edges import find_cracks
+from img2tri.shapes.polygons import component_polygons, enclosed_areas, region_polygons, region_rings
+from img2tri.shapes.trace.crack_edges import find_crack_edges
 from img2tri.shapes.trace.dual_edges import lay_out
 from img2tri.types import Frame
 
 
 def outlines_of(labels, background=0, connectivity=4):
-    """The outlines through the middles of all cracks."""
-    cracks = find_cracks(labels, background=background, connectivity=connectivity)
-    links = lay_out(cracks, Frame(labels.shape))
-    return links.outlines(links.middle)
+    """The outlines through the middles of all crack_edges."""
+    crack_edges = find_crack_edges(labels, background=background, connectivity=connectivity)
+    dual_edges = lay_out(crack_edges, Frame(labels.shape))
+    return dual_edges.outlines(dual_edges.middle)
 
 
 def targets(size=41):
-    """Rings in rings of two labels in turn, off the centre, and two of them side by side."""
+    """RegionRings in rings of two labels in turn, off the centre, and two of them side by side."""
     y, x = np.mgrid[:size, :size]
     one = np.maximum(abs(x - 18), abs(y - 22)) // 3 % 3
     return np.concatenate([one, one[::-1]], axis=1)
@@ -38,7 +38,7 @@ SHAPES = specimens.ALL | {"targets": targets(), "random": np.random.default_rng(
 @pytest.mark.parametrize("name", SHAPES)
 def test_rings_go_round_their_region(name, background):
     outlines = outlines_of(SHAPES[name], background)
-    r = rings(outlines)
+    r = region_rings(outlines)
     assert (r.starts[0], r.starts[-1]) == (0, len(r.points))
     expected = oracles.joined_topology(SHAPES[name], background=background)
     for number, value in enumerate(outlines.labels[1:].tolist(), start=1):
@@ -71,7 +71,7 @@ def test_any_label_map(case):
     outlines = outlines_of(labels, background)
     by_region = region_polygons(outlines)
     oracles.check_coverage(by_region, labels, None, background=background)
-    values, parts = polygons(outlines)
+    values, parts = component_polygons(outlines)
     assert values.dtype == np.int64
     for value, whole in by_region.items():
         mine = parts[values == value]
@@ -97,7 +97,7 @@ def test_islands_in_islands_of_the_same_region():
     """Squares of the labels 1 . 1 . 1 within each other: three components, of which the outer two have a hole."""
     y, x = np.mgrid[:27, :27]
     labels = 1 - np.maximum(abs(x - 13), abs(y - 13)) // 3 % 2
-    values, parts = polygons(outlines_of(labels))
+    values, parts = component_polygons(outlines_of(labels))
     assert values.tolist() == [1, 1, 1]
     parts = sorted(parts, key=lambda p: p.bounds[0])
     assert [len(p.interiors) for p in parts] == [1, 1, 0]
@@ -122,11 +122,11 @@ def test_one_polygon_or_several_by_ascending_label():
 
 def test_of_no_outlines_there_is_no_polygon():
     outlines = outlines_of(np.zeros((3, 3), int))
-    values, parts = polygons(outlines)
+    values, parts = component_polygons(outlines)
     assert len(values) == len(parts) == 0
     assert region_polygons(outlines) == {}
     assert enclosed_areas(outlines).tolist() == [0]
-    r = rings(outlines)
+    r = region_rings(outlines)
     assert r.points.shape == (0, 2)
     assert r.starts.tolist() == [0]
 
@@ -135,5 +135,5 @@ def test_areas_are_exact_far_from_the_origin():
     labels = np.zeros((400, 3000), int)
     labels[-4:-1, -4:-1] = labels[1, 1] = 1
     # Through the middles of the sides: the four corners of each ring are cut off, an eighth of a pixel each.
-    assert sorted(rings(outlines_of(labels)).areas.tolist()) == pytest.approx([0.5, 8.5], abs=1e-9)
+    assert sorted(region_rings(outlines_of(labels)).areas.tolist()) == pytest.approx([0.5, 8.5], abs=1e-9)
     assert enclosed_areas(outlines_of(labels)) == pytest.approx([0, 9.0], abs=1e-9)

@@ -1,9 +1,11 @@
 """Chains -> dense outlines: where between two pixel centres the outline passes.
 
-constrained_smoothing  Smoothing along the arc, crossing by crossing as far as the pixels allow: the widest spline that fits.
+In the order of the flow:
+
+placement              Dual edges -> dense outlines, by the files below.
+iso_crossings          Gray values -> where on its dual edge each crossing lies, and how surely.
 corners                Where an outline has a corner, and where exactly it is.
-iso_crossings          Gray values -> where on its link each crossing lies, and how surely.
-padded_chains          Chains unrolled on one line, so that smoothing along all of them is one convolution.
-placement              Links -> dense outlines: where between two pixel centres the outline passes.
-smoothing_splines      Smoothing splines along chains of points: the smooth curve of a scale, and what else follows the arc.
+constrained_smoothing  Each crossing onto the widest smoothing spline that fits its bounds; then each chain to its area.
+smoothing_splines      The smooth curve of a scale through the points of chains.
+padded_chains          Chains continued beyond their ends and laid out on one line.
 """

@@ -1,13 +1,16 @@
-"""Smoothing along the arc, crossing by crossing as far as the pixels allow: the widest spline that fits.
+"""Constrained smoothing: each crossing onto the widest smoothing spline that fits its bounds, there and nearby.
 
-In: points on their links, and the range each may shift in. Out: shifts along the links. The points are smoothed along the arc
-at several scales (see `splines`). Each crossing takes the widest scale at which the smooth curve, there and nearby, passes
-through the ranges or near them; where it just misses one, it is bent towards it, gently. On long runs this averages the steps
-of many pixels away; at corners and in thin parts only narrow scales fit. Last, each chain is shifted as a whole until it
-encloses the area it should.
+In: points on their dual edges, and the bounds each may shift within. Out: shifts. The points are smoothed along the arc at several
+scales (see `smoothing_splines`). Each crossing takes the widest scale at which the spline, there and nearby, passes through the bounds
+or near them; where it just misses one, it is bent towards it, gently. On long stretches this averages the steps of many pixels away;
+at corners and in thin parts only narrow scales fit. Last, each chain is shifted as a whole until it encloses the area it should.
+
+Smoothing within the bounds of the pixels is what constrained surface nets do (Gibson 1998, DOI 10.1007/BFb0056277), there by
+relaxation at one scale; the choice of a scale for each point follows scale-space theory (Lindeberg, "Feature detection with automatic
+scale selection", 1998, DOI 10.1023/A:1008045108935).
 
 That a narrow scale misses says nothing of wide ones: a single pixel that sticks out at the top of a disc is a bump to the one,
-and the disc's own to the other.
+and part of the disc to the other.
 
 Others tried on discs, ellipses and rectangles: Laplace and Taubin smoothing, least bending, least change of curvature, one
 scale for all: their error is two to four times greater, or they lose corners and small shapes. Gaussians with their shrinkage
@@ -21,35 +24,36 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from img2tri.shapes.place.padded_chains import Points, Unrolled, cross
-from img2tri.shapes.place.smoothing_splines import CONTINUED, Elastic, beyond, faded
-from img2tri.types import Bools, Floats, Ints
+from img2tri.arrays import Bools, ChainIndex, Floats, Ints, Points, cross
+from img2tri.shapes.place.padded_chains import PaddedChains
+from img2tri.shapes.place.smoothing_splines import PADDING, SmoothingSpline, fade_out, farther_than
 
-SCALES = (1.5, 5.0, 16.0)  # px, see `splines.Elastic`
-MISFIT = 0.4  # of the slack: by how much a smooth curve may miss the range of a crossing and still count as fitting
-WINDOW = 3.0  # scales: how far from a range that is missed a curve fits
-FREE = 5.0  # px, the least scale that moves the ends of chains along the frame: short chains there would lose their area
-SAME = 1e-12  # px, a step that changes nothing
-BENDS = 2  # how often a curve is bent towards the ranges it misses
+SCALES = (1.5, 5.0, 16.0)  # px, see `SmoothingSpline.smoothed`
+MISFIT = 0.4  # of the slack: by how much a spline may miss the bounds of a crossing and still count as fitting
+WINDOW = 3.0  # scales: how far from bounds that are missed a spline fits
+FREE_ENDS = 5.0  # px, the least scale that moves the ends of chains along the frame: short chains there would lose their area
+NO_STEP = 1e-12  # px, a step that changes nothing
+BENDS = 2  # how often a spline is bent towards the bounds it misses
 BEND = 0.75  # of the scale: to how many places on either side a bend reaches
+AREA_ROUNDS = 8  # of shifting chains for their area; two or three do
 
 
 @dataclass(frozen=True, eq=False)
-class Sliding:
-    """Points in chains, each free to slide a little along its link.
+class BoundedChains:
+    """Points in chains, each free to slide a little along an axis of its own.
 
     Attributes
     ----------
     points
         (n,) where they are.
     axis
-        (n,) the directions they may slide in, as long as the links; 0 for those that stay.
+        (n,) the axes they may slide along, as long as the dual edges; 0 for points that stay.
     low, high
-        (n,) the ranges they may slide in, in lengths of the link.
+        (n,) the bounds of their shifts, in lengths of the axis.
     slack
-        (n,) how far they may be from where they should be, in lengths of the link.
-    indices, starts, rings
-        The chains, as in `Outlines`; which of them are rings.
+        (n,) how far they may be from where they should be, in lengths of the axis.
+    chains
+        The points of each chain.
     """
 
     points: Points
@@ -57,58 +61,56 @@ class Sliding:
     low: Floats
     high: Floats
     slack: Floats
-    indices: Ints
-    starts: Ints
-    rings: Bools
+    chains: ChainIndex
 
     @property
-    def chain(self) -> Ints:
-        """(k,) the chain of each entry of `indices`."""
-        return np.repeat(np.arange(len(self.rings)), np.diff(self.starts))
+    def slides(self) -> Bools:
+        """(n,) bool, the points that may slide."""
+        return np.asarray(self.axis != 0)
 
     @property
     def movable(self) -> Bools:
         """(c,) the chains with points that may slide; those along the frame have none but at their ends."""
-        return np.asarray(self.axis[self.indices[self.starts[:-1] + 1]] != 0)
+        return self.slides[self.chains.indices[self.chains.first + 1]]
 
 
-def widest_fit(s: Sliding) -> Floats:
-    """Shift each point (n,) along its link onto the smooth curve of the widest scale that fits."""
+def widest_fitting_spline(s: BoundedChains) -> Floats:
+    """Return the shift of each point (n,) along its axis onto the smoothing spline of the widest scale that fits."""
     shift, level = np.zeros((len(SCALES) + 1, len(s.points))), np.zeros(len(s.points), np.int64)
-    long = [(np.diff(s.starts) > 6 * scale) & s.movable for scale in SCALES]
+    long = [(np.diff(s.chains.starts) > 6 * scale) & s.movable for scale in SCALES]
     for k, scale in enumerate(SCALES, start=1):
         if not long[k - 1].any():
             break
         if k == 1 or (long[k - 1] != long[k - 2]).any():
             # The wider scales of the same chains are served, too.
             widest = max(other for other, chains in zip(SCALES, long, strict=True) if (chains == long[k - 1]).all())
-            line = Unrolled(s.indices, s.starts, s.rings, long[k - 1], max(CONTINUED, math.ceil(3 * BEND * widest) + 1))
-            curves = Elastic(line, line.points(s.points), s.axis != 0)
+            line = PaddedChains(s.chains, long[k - 1], max(PADDING, math.ceil(3 * BEND * widest) + 1))
+            splines = SmoothingSpline(line, line.points(s.points), s.slides)
         at = line.source
-        off, direction = curves.smoothed(scale)
-        # Slide to the tangent of the curve.
+        off, direction = splines.smoothed(scale)
+        # Slide to the tangent of the spline.
         axis, low, high = line.sign * s.axis[at], s.low[at], s.high[at]
         across = cross(axis, direction)
         steep = np.abs(across) > 1e-9
         t = np.divide(cross(off, direction), across, out=np.zeros(len(at)), where=steep)[line.original]
-        # A range is missed by what lies across the curve: along links that run nearly as it does, it says little.
+        # How far bounds are missed counts across the spline: along dual edges that run nearly as it does, it says little.
         missed = np.abs((t - np.clip(t, low, high)) * across) > MISFIT * s.slack[at] * np.abs(axis)
-        fits = beyond(line, curves.steps, missed & ~line.node, WINDOW * scale)
+        fits = farther_than(line, splines.steps, missed & ~line.node, WINDOW * scale)
         for _ in range(BENDS):
             miss = np.where(fits & ~line.node, (t - np.clip(t, low, high)) * across, 0)
-            t -= np.divide(faded(line, miss, BEND * scale), across, out=np.zeros(len(at)), where=steep)
+            t -= np.divide(fade_out(line, miss, BEND * scale), across, out=np.zeros(len(at)), where=steep)
         own = at[line.own]
-        shift[k, own] = np.where(line.node & (scale < FREE), 0, np.clip(t, low, high))[line.own]
+        shift[k, own] = np.where(line.node & (scale < FREE_ENDS), 0, np.clip(t, low, high))[line.own]
         level[own[fits[line.own]]] = k
     return _blend(shift, level, s)
 
 
-def _blend(shift: Floats, level: Ints, s: Sliding) -> Floats:
+def _blend(shift: Floats, level: Ints, s: BoundedChains) -> Floats:
     """Pick each point's own scale, with a soft transition where neighbours took different ones."""
     if not level.any():
         return np.zeros(shift.shape[1])
     kernel = np.array([1.0, 8, 28, 56, 70, 56, 28, 8, 1]) / 256
-    line = Unrolled(s.indices, s.starts, s.rings, s.movable, len(kernel) // 2)
+    line = PaddedChains(s.chains, s.movable, len(kernel) // 2)
     at, result = line.source[line.own], np.zeros(shift.shape[1])
     for k in range(1, len(shift)):
         share = np.convolve((level[line.source] == k).astype(np.float64), kernel, "same")
@@ -116,24 +118,24 @@ def _blend(shift: Floats, level: Ints, s: Sliding) -> Floats:
     return np.clip(result, s.low, s.high)
 
 
-def keep_areas(s: Sliding, shift: Floats, wanted: Floats, *, rounds: int = 8) -> Floats:
+def restore_swept_areas(s: BoundedChains, shift: Floats, wanted: Floats) -> Floats:
     """Shift each chain sideways until it sweeps the `wanted` area (c,), seen from the origin; return the new shifts."""
-    at, chain = s.indices, s.chain
-    ring_start, ring_end = s.starts[:-1][s.rings], s.starts[1:][s.rings] - 1
-    for _ in range(rounds):
+    at, chain = s.chains.indices, s.chains.chain
+    ring_start, ring_end = s.chains.ring_ends
+    for _ in range(AREA_ROUNDS):
         moved = s.points + shift * s.axis
         z = moved[at]
         ahead, behind = np.roll(z, -1), np.roll(z, 1)
         behind[ring_start], ahead[ring_end] = z[ring_end - 1], z[ring_start + 1]
-        # A step dt along the link sweeps the area dt * axis x (ahead - behind) / 2.
+        # A step dt along the axis sweeps the area dt * axis x (ahead - behind) / 2.
         width = cross(s.axis[at], ahead - behind) / 2
-        missing = wanted - swept(moved, s)
-        # One at the end of its range may still go back.
+        missing = wanted - swept_areas(moved, s)
+        # A point at one of its bounds may still go back.
         free = np.where(missing[chain] * width > 0, shift[at] < s.high[at], s.low[at] < shift[at])
         free[ring_end] = False
         gain = np.bincount(chain, np.abs(width) * free, len(wanted))
         step = np.divide(missing, gain, out=np.zeros_like(gain), where=gain > 0.1)
-        if np.abs(step).max(initial=0) < SAME:
+        if np.abs(step).max(initial=0) < NO_STEP:
             break
         move = np.zeros_like(shift)
         move[at[free]] = (np.clip(step, -0.25, 0.25)[chain] * np.sign(width))[free]
@@ -141,10 +143,10 @@ def keep_areas(s: Sliding, shift: Floats, wanted: Floats, *, rounds: int = 8) ->
     return shift
 
 
-def swept(z: Points, s: Sliding) -> Floats:
+def swept_areas(z: Points, s: BoundedChains) -> Floats:
     """Area (c,) each chain sweeps as seen from the origin."""
-    p = z[s.indices]
+    p = z[s.chains.indices]
     area = np.zeros(len(p))
     area[:-1] = cross(p[:-1], p[1:]) / 2
-    area[s.starts[1:] - 1] = 0
-    return np.asarray(np.bincount(s.chain, area, len(s.rings)), np.float64)
+    area[s.chains.last] = 0
+    return np.asarray(np.bincount(s.chains.chain, area, len(s.chains.rings)), np.float64)

@@ -1,6 +1,7 @@
-"""Gray values -> where on its link each crossing lies, and how surely.
+"""Gray values -> where on its dual edge each crossing lies, and how surely.
 
-Between two pixel centres the gray value is taken to change evenly; the outline passes where it reaches the level. That level
+Between two pixel centres the gray value is interpolated linearly; the outline passes where it reaches the level, as in marching
+squares (Lorensen and Cline, "Marching cubes", 1987, DOI 10.1145/37402.37422, in two dimensions). That level
 is a number where the user gave one: the outline is an iso-line. Else it is the middle between the two sides as they are
 nearby: on an edge drawn by area coverage, that is where the edge is, whatever the two sides are like, while a level
 found for the whole image lies off the edges of all zones but the average one.
@@ -16,15 +17,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from img2tri.shapes.place.padded_chains import Points
-from img2tri.shapes.trace.dual_edges import REACH
-from img2tri.types import Floats, Frame, Ints
+from img2tri.arrays import Floats, Ints, Points, as_rows
+from img2tri.shapes.trace.dual_edges import BOUND
+from img2tri.types import Frame
 
-KNOWN = 0.15  # of the link: how far a crossing that is known may be shifted by smoothing
+SURE = 0.15  # of the dual edge: how far smoothing may shift a crossing whose place the gray values tell
 HARD = 0.98  # contrast of two pixels, relative to that of their sides, from which an edge is hard
 
 
-def crossings_by_level(gray: NDArray[Any], level: float | None, middle: Points, axis: Points, frame: Frame) -> tuple[Floats, Floats]:
+def iso_crossings(gray: NDArray[Any], level: float | None, middle: Points, vector: Points, frame: Frame) -> tuple[Floats, Floats]:
     """Place crossings by gray values.
 
     Parameters
@@ -34,20 +35,20 @@ def crossings_by_level(gray: NDArray[Any], level: float | None, middle: Points, 
     level
         The gray value of the outline; None is the middle between the two sides nearby.
     middle, axis
-        (n,) middle and direction of the links, from the pixel centre on the right to the one on the left; 0 where a point stays.
+        (n,) middle and direction of the dual_edges, from the pixel centre on the right to the one on the left; 0 where a point has none.
     frame
-        Where the image lies; links are in its plane.
+        Where the image lies; dual edges are in its plane.
 
     Returns
     -------
     shift : (n,) float64
-        Place of each crossing on its link, from its middle, in lengths of the link.
+        Place of each crossing on its dual edge, from its middle, in lengths of the dual edge.
     slack : (n,) float64
         How far smoothing may shift it from there.
     """
-    shift, slack = np.zeros(len(middle)), np.full(len(middle), REACH)
-    at = np.flatnonzero(axis)
-    left, right = _pixels(middle[at] + axis[at] / 2, frame), _pixels(middle[at] - axis[at] / 2, frame)
+    shift, slack = np.zeros(len(middle)), np.full(len(middle), BOUND)
+    at = np.flatnonzero(vector)
+    left, right = _pixels(middle[at] + vector[at] / 2, frame), _pixels(middle[at] - vector[at] / 2, frame)
     a, b = _values(gray, left), _values(gray, right)
     rising = a > b
     # The sides as they are nearby: the brightest around the brighter pixel, the darkest around the darker one.
@@ -57,14 +58,14 @@ def crossings_by_level(gray: NDArray[Any], level: float | None, middle: Points, 
     wanted = (bright + dark) / 2 if level is None else level
     contrast = np.where(a != b, a - b, 1.0)
     s = np.where(a != b, (wanted - b) / contrast - 0.5, 0.0)
-    shift[at] = np.clip(s, -REACH, REACH)
-    slack[at] = np.where(np.abs(a - b) < HARD * (bright - dark), KNOWN, REACH)
+    shift[at] = np.clip(s, -BOUND, BOUND)
+    slack[at] = np.where(np.abs(a - b) < HARD * (bright - dark), SURE, BOUND)
     return shift, slack
 
 
 def _pixels(centres: Points, frame: Frame) -> tuple[Ints, Ints]:
     """Row and column of the pixels with these centres."""
-    rows, columns = frame.row_column(frame.world(np.stack([centres.real, centres.imag], axis=1)))
+    rows, columns = frame.row_column(frame.world(as_rows(centres)))
     return rows.astype(np.int64), columns.astype(np.int64)
 
 

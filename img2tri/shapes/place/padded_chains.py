@@ -1,7 +1,7 @@
-"""Chains unrolled on one line, so that smoothing along all of them is one convolution.
+"""Chains padded and laid out on one line, so that smoothing along all of them is one convolution, or one banded system.
 
-Each chain is continued beyond its ends by `reach` points: a ring goes round once more, an open chain is turned by half a
-turn about its end node, which keeps the node where it is and the direction there steady::
+Each chain is continued beyond its ends by some places. A ring goes round once more (periodic extension). An open chain is turned by
+half a turn about its end node (odd extension), which keeps the node where it is and the direction there steady::
 
     ring      d e [a b c d e] a b          open      . . [A b c D] . .      turned about A and about D
 """
@@ -9,22 +9,19 @@ turn about its end node, which keeps the node where it is and the direction ther
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from img2tri.types import Bools, Floats, Ints
-
-Points = NDArray[np.complex128]
+from img2tri.arrays import Bools, ChainIndex, Floats, Points, runs
 
 
-class Unrolled:
-    """The entries of `indices` of some chains, continued at both ends.
+class PaddedChains:
+    """The entries of some chains, continued at both ends, one chain after the other.
 
     Attributes
     ----------
     source
         (k,) the point each place on the line stands for.
     own
-        (k,) bool, the place belongs to the chain itself, not to a continuation; each crossing has one such place.
+        (k,) bool, the place belongs to the chain itself, not to its padding; each crossing has one such place.
     original
         (k,) the own place each place repeats.
     sign
@@ -36,18 +33,19 @@ class Unrolled:
     node
         (k,) bool, the own places at the ends of open chains.
     end
-        (k,) the point of the node an open chain is turned about, at its continuations; elsewhere the point itself.
+        (k,) the point of the node an open chain is turned about, at its padding; elsewhere the point itself.
     """
 
-    def __init__(self, indices: Ints, starts: Ints, rings: Bools, chosen: Bools, reach: int) -> None:
-        chains = np.flatnonzero(chosen)
-        first, ring = starts[:-1][chains], rings[chains]
-        steps = np.diff(starts)[chains] - 1  # from the first point to the last; a ring's last is its first again
-        length = steps + np.where(ring, 0, 1) + 2 * reach
-        which = np.repeat(np.arange(len(chains)), length)
-        begin = (np.cumsum(length) - length)[which] + reach
-        place = np.arange(len(which)) - begin
-        self.own = (place >= 0) & (place < (length - 2 * reach)[which])
+    def __init__(self, chains: ChainIndex, chosen: Bools, padding: int) -> None:
+        """Lay out the chosen (c,) bool of the chains, with so many places of padding at both ends."""
+        indices, chosen_ones = chains.indices, np.flatnonzero(chosen)
+        first, ring = chains.first[chosen_ones], chains.rings[chosen_ones]
+        steps = np.diff(chains.starts)[chosen_ones] - 1  # from the first point to the last; a ring's last is its first again
+        length = steps + np.where(ring, 0, 1) + 2 * padding
+        which, place = runs(length)
+        place -= padding
+        begin = np.arange(len(which)) - place
+        self.own = (place >= 0) & (place < (length - 2 * padding)[which])
         turns, rest, out = np.zeros_like(place), place.copy(), np.flatnonzero(~self.own)
         turns[out], rest[out] = np.divmod(place[out], (np.where(ring, 1, 2) * steps)[which[out]])
         turned = rest > steps[which]
@@ -74,10 +72,4 @@ class Unrolled:
 def convolve(line: Points, kernel: Floats) -> Points:
     """Convolve complex values with a real kernel of odd length; the result is as long as `line`."""
     result: Points = np.convolve(line.real, kernel, "same") + 1j * np.convolve(line.imag, kernel, "same")
-    return result
-
-
-def cross(a: Points, b: Points) -> Floats:
-    """Cross product of plane vectors written as complex numbers."""
-    result: Floats = a.real * b.imag - a.imag * b.real
     return result

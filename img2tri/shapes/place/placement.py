@@ -1,7 +1,8 @@
-"""Links -> dense outlines: where between two pixel centres the outline passes.
+"""Dual edges -> dense outlines: where between two pixel centres the outline passes.
 
-Any place is right as far as topology goes (see `links`), so all places can be chosen well: by the gray values where there
-are any (`levels`), exactly at corners (`corners`), and by smoothing along the arc within what these leave open (`fitting`).
+Any place within the bounds is right as far as topology goes (see `dual_edges`), so all places can be chosen well: by the gray values
+where there are any (`iso_crossings`), exactly at corners (`corners`), and by smoothing along the arc within what these leave open
+(`constrained_smoothing`).
 """
 
 from __future__ import annotations
@@ -12,128 +13,132 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from img2tri.shapes.place.constrained_smoothing import Sliding, keep_areas, swept, widest_fit
+from img2tri.arrays import Floats, Points, cross
+from img2tri.shapes.place.constrained_smoothing import BoundedChains, restore_swept_areas, swept_areas, widest_fitting_spline
 from img2tri.shapes.place.corners import find_corners
-from img2tri.shapes.place.iso_crossings import crossings_by_level
-from img2tri.shapes.place.padded_chains import Points, cross
-from img2tri.shapes.trace.crack_edges import Cracks
-from img2tri.shapes.trace.dual_edges import REACH, Links, cut, lay_out
-from img2tri.types import Floats, Frame, Outlines
+from img2tri.shapes.place.iso_crossings import iso_crossings
+from img2tri.shapes.trace.crack_edges import CrackEdges
+from img2tri.shapes.trace.dual_edges import BOUND, DualEdges, cut_chains, lay_out
+from img2tri.types import Frame, Outlines
+
+NODE_PASSES = 4  # of averaging along the chains, after which each node is put where they lead
 
 
-def place(
-    cracks: Cracks, frame: Frame, *, gray: NDArray[Any] | None = None, level: float | None = None, corners: bool = True
-) -> tuple[Outlines, Links]:
-    """Return the dense outlines, in the plane of `frame`, and the links their points lie on.
+def place_outlines(
+    crack_edges: CrackEdges, frame: Frame, *, gray: NDArray[Any] | None = None, level: float | None = None, corners: bool = True
+) -> tuple[Outlines, DualEdges]:
+    """Return the dense outlines, in the plane of `frame`, and the dual edges their points lie on.
 
     Parameters
     ----------
-    cracks
-        From `find_cracks`.
+    crack_edges
+        From `find_crack_edges`.
     frame
         Where the image lies.
     gray, level
-        (h, w) gray values and the level of the outline among them, see `levels`; None: the label map is all there is.
+        (h, w) gray values and the level of the outline among them, see `iso_crossings`; None: the label map is all there is.
     corners
         True: corners stay sharp; False: they are rounded as all else is.
     """
-    links = lay_out(cracks, frame)
-    if not len(links.crack):
-        return links.outlines(links.middle), links
-    shift, slack = _known(links, frame, gray, level)
+    dual_edges = lay_out(crack_edges, frame)
+    if not len(dual_edges.crossed):
+        return dual_edges.outlines(dual_edges.middle), dual_edges
+    shift, slack = _known_shifts(dual_edges, frame, gray, level)
     if corners:
-        bends, sharp = find_corners(_sliding(links, links.middle, shift, slack), links.head, REACH * links.pixel)
-        at = cracks.head[links.crack[bends]]
-        once = np.diff(np.searchsorted(np.sort(cracks.tail), np.stack([at, at + 1])), axis=0)[0] == 1
+        bends, sharp = find_corners(
+            _bounded(dual_edges, dual_edges.middle, shift, slack), dual_edges.corner_after, BOUND * dual_edges.pixel
+        )
+        at = crack_edges.head[dual_edges.crossed[bends]]
+        once = np.diff(np.searchsorted(np.sort(crack_edges.tail), np.stack([at, at + 1])), axis=0)[0] == 1
         bends, sharp, at = bends[once], sharp[once], at[once]
     if corners and len(bends):
-        links = cut(links, bends, frame)
-        shift, slack = _known(links, frame, gray, level)
-    points = _settle_nodes(links)
+        dual_edges = cut_chains(dual_edges, bends, frame)
+        shift, slack = _known_shifts(dual_edges, frame, gray, level)
+    points = _place_nodes(dual_edges)
     if corners:
-        points[len(links.crack) + np.searchsorted(links.node, at)] = sharp
-    sliding = _sliding(links, points, shift, slack)
-    free = _with_free_ends(sliding, links)
-    shift = widest_fit(free)
+        points[len(dual_edges.crossed) + np.searchsorted(dual_edges.node_corner, at)] = sharp
+    bounded = _bounded(dual_edges, points, shift, slack)
+    free = _with_free_ends(bounded, dual_edges)
+    shift = widest_fitting_spline(free)
     # From here on the nodes on the frame stay, too.
-    ends = sliding.axis != free.axis
+    ends = bounded.axis != free.axis
     points[ends] += (shift * free.axis)[ends]
-    sliding, shift = replace(sliding, points=np.where(ends, points, sliding.points)), np.where(ends, 0.0, shift)
-    shift = keep_areas(sliding, shift, _wanted(sliding, links, slack))
-    return links.outlines(sliding.points + shift * links.axis), links
+    bounded, shift = replace(bounded, points=np.where(ends, points, bounded.points)), np.where(ends, 0.0, shift)
+    shift = restore_swept_areas(bounded, shift, _wanted_areas(bounded, dual_edges, slack))
+    return dual_edges.outlines(bounded.points + shift * dual_edges.vector), dual_edges
 
 
-def _known(links: Links, frame: Frame, gray: NDArray[Any] | None, level: float | None) -> tuple[Floats, Floats]:
-    """Where each point lies on its link as far as is known, and how far it may be shifted from there."""
+def _known_shifts(dual_edges: DualEdges, frame: Frame, gray: NDArray[Any] | None, level: float | None) -> tuple[Floats, Floats]:
+    """Where each point lies on its dual edge as far as is known, and how far it may be shifted from there."""
     if gray is None:
-        return np.zeros(len(links.middle)), np.full(len(links.middle), REACH)
-    return crossings_by_level(gray, level, links.middle, links.axis, frame)
+        return np.zeros(len(dual_edges.middle)), np.full(len(dual_edges.middle), BOUND)
+    return iso_crossings(gray, level, dual_edges.middle, dual_edges.vector, frame)
 
 
-def _sliding(links: Links, points: Points, shift: Floats, slack: Floats) -> Sliding:
-    """Points shifted to where they are known to lie, with the ranges that are left to them."""
-    low, high = np.maximum(-slack, -REACH - shift), np.minimum(slack, REACH - shift)
-    return Sliding(points + shift * links.axis, links.axis, low, high, slack, links.indices, links.starts, links.rings)
+def _bounded(dual_edges: DualEdges, points: Points, shift: Floats, slack: Floats) -> BoundedChains:
+    """Points shifted to where they are known to lie, with the bounds that are left to them."""
+    low, high = np.maximum(-slack, -BOUND - shift), np.minimum(slack, BOUND - shift)
+    return BoundedChains(points + shift * dual_edges.vector, dual_edges.vector, low, high, slack, dual_edges.chains)
 
 
-def _with_free_ends(s: Sliding, links: Links) -> Sliding:
-    """Let the nodes on the frame of the image slide along it, as the crossing next to each does on its link."""
-    first, last = links.ends
-    beside = np.concatenate([s.indices[s.starts[:-1] + 1], s.indices[s.starts[1:] - 2]])
+def _with_free_ends(s: BoundedChains, dual_edges: DualEdges) -> BoundedChains:
+    """Let the nodes on the frame of the image slide along it, as the crossing next to each does on its dual edge."""
+    first, last = dual_edges.chains.ends
+    beside = np.concatenate([s.chains.indices[s.chains.first + 1], s.chains.indices[s.chains.last - 1]])
     node = np.concatenate([first, last])
-    ends = np.concatenate([~s.rings, ~s.rings]) & (links.room[node] == 0) & (s.axis[beside] != 0)
+    ends = np.concatenate([~s.chains.rings, ~s.chains.rings]) & (dual_edges.bounds[node] == 0) & s.slides[beside]
     axis = s.axis.copy()
     axis[node[ends]] = s.axis[beside[ends]]
     return replace(s, axis=axis)
 
 
-def _wanted(s: Sliding, links: Links, slack: Floats) -> Floats:
+def _wanted_areas(s: BoundedChains, dual_edges: DualEdges, slack: Floats) -> Floats:
     """Area each chain has to sweep: through the places that are known, and along the sides of pixels where none are.
 
     So regions of a mask keep the areas of their pixels.
     """
-    one, other = links.indices[:-1], links.indices[1:]
-    corner = np.concatenate([links.head, links.middle[len(links.crack) :]])  # that of the pixels after each point
+    one, other = dual_edges.chains.indices[:-1], dual_edges.chains.indices[1:]
+    corner = np.concatenate([dual_edges.corner_after, dual_edges.middle[len(dual_edges.crossed) :]])  # that of the pixels after each point
     detour = cross(corner[one] - s.points[one], s.points[other] - s.points[one]) / 2
-    unknown = (slack[one] == REACH) & (slack[other] == REACH) & (np.diff(links.chain) == 0)
-    return np.asarray(swept(s.points, s) + np.bincount(links.chain[:-1], detour * unknown, len(links.rings)))
+    unknown = (slack[one] == BOUND) & (slack[other] == BOUND) & (np.diff(dual_edges.chains.chain) == 0)
+    return np.asarray(swept_areas(s.points, s) + np.bincount(dual_edges.chains.chain[:-1], detour * unknown, len(dual_edges.chains.rings)))
 
 
-def _settle_nodes(links: Links, passes: int = 4) -> Points:
+def _place_nodes(dual_edges: DualEdges) -> Points:
     """Move each node to where the chains that meet there lead, within its block."""
-    z, at = links.middle.copy(), links.indices
-    movable = links.room != 0
+    z, chains, at = dual_edges.middle.copy(), dual_edges.chains, dual_edges.chains.indices
+    bounds, movable = dual_edges.bounds, dual_edges.bounds != 0
     if not movable.any():
         return z
-    ends = np.concatenate([links.starts[:-1][~links.rings], links.starts[1:][~links.rings] - 1])
+    ends = np.concatenate([chains.first[~chains.rings], chains.last[~chains.rings]])
     beside = at[ends + np.repeat([1, -1], len(ends) // 2)]
     meeting = np.maximum(np.bincount(at[ends], minlength=len(z)), 1)
     inner = np.ones(len(at), bool)
-    inner[links.starts[:-1]] = inner[links.starts[1:] - 1] = False
+    inner[chains.first] = inner[chains.last] = False
     inner = np.flatnonzero(inner)
-    for _ in range(passes):
+    for _ in range(NODE_PASSES):
         mean = (np.bincount(at[ends], z[beside].real, len(z)) + 1j * np.bincount(at[ends], z[beside].imag, len(z))) / meeting
         z[at[inner]] = (z[at[inner - 1]] + 2 * z[at[inner]] + z[at[inner + 1]]) / 4
-        off = mean - links.middle
-        off = np.clip(off.real, -links.room.real, links.room.real) + 1j * np.clip(off.imag, -links.room.imag, links.room.imag)
-        z[movable] = (links.middle + off)[movable]
-    return np.where(movable, z, links.middle)
+        off = mean - dual_edges.middle
+        off = np.clip(off.real, -bounds.real, bounds.real) + 1j * np.clip(off.imag, -bounds.imag, bounds.imag)
+        z[movable] = (dual_edges.middle + off)[movable]
+    return np.where(movable, z, dual_edges.middle)
 
 
-def place_on_sides(cracks: Cracks, frame: Frame) -> tuple[Outlines, Links]:
+def place_on_pixel_sides(crack_edges: CrackEdges, frame: Frame) -> tuple[Outlines, DualEdges]:
     """Return the outlines that run exactly along the sides of pixels.
 
     Only where a checkerboard would make an outline touch itself, the tips of its pixels are cut off half-way along their sides.
     """
-    links = lay_out(cracks, frame)
-    n, along = len(links.crack), links.head - links.middle[: len(links.crack)]
-    at = links.indices
-    # After each crossing comes the corner of pixels its crack ends at, if the outline turns there, and no other passes it.
-    crossing = np.flatnonzero((at[:-1] < n) & (at[1:] < n) & (links.chain[:-1] == links.chain[1:]))
+    dual_edges = lay_out(crack_edges, frame)
+    n, along = len(dual_edges.crossed), dual_edges.corner_after - dual_edges.middle[: len(dual_edges.crossed)]
+    at = dual_edges.chains.indices
+    # After each crossing comes the corner of pixels its crack edge ends at, if the outline turns there, and no other passes it.
+    crossing = np.flatnonzero((at[:-1] < n) & (at[1:] < n) & (dual_edges.chains.chain[:-1] == dual_edges.chains.chain[1:]))
     one, other = at[crossing], at[crossing + 1]
     turns = np.abs(cross(along[one], along[other])) > 0
-    passes = np.searchsorted(np.sort(cracks.tail), cracks.head[links.crack[one]][:, None] + [0, 1])
+    passes = np.searchsorted(np.sort(crack_edges.tail), crack_edges.head[dual_edges.crossed[one]][:, None] + [0, 1])
     bends = one[turns & (np.diff(passes, axis=1)[:, 0] == 1)]
-    links = cut(links, bends, frame)
-    links = replace(links, axis=np.zeros_like(links.axis), room=np.zeros_like(links.room))
-    return links.outlines(links.middle), links
+    dual_edges = cut_chains(dual_edges, bends, frame)
+    dual_edges = replace(dual_edges, vector=np.zeros_like(dual_edges.vector), bounds=np.zeros_like(dual_edges.bounds))
+    return dual_edges.outlines(dual_edges.middle), dual_edges

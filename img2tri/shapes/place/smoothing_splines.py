@@ -1,31 +1,31 @@
 """Smoothing splines along chains of points: the smooth curve of a scale, and what else follows the arc.
 
-The curve has the least sum of two things: its squared distances from the points, each counted for its share of the arc, and
-``(WIDTH scale)^6`` times the integral of its squared third derivative. Straight lines and parabolas cost nothing, so arcs hardly
-shrink. It is the solution of one banded system of equations, as quick for a wide scale as for a narrow one, which a Gaussian is
-not.
+A discrete smoothing spline, or Whittaker smoother of order three (Whittaker, "On a new method of graduation", 1923, DOI
+10.1017/S0013091500077853; Eilers, "A perfect smoother", 2003, DOI 10.1021/ac034173t): the curve has the least sum of its squared
+distances from the points, each weighted by its share of the arc, and of ``(WIDTH scale)^6`` times the integral of its squared third
+derivative. Straight lines and parabolas cost nothing, so arcs hardly shrink. It is the solution of one banded system of equations,
+as quick for a wide scale as for a narrow one, which a Gaussian is not.
 
-The arc is that of the points smoothed a little: the steps of pixels make a line longer, by up to the root of two, and how much
-depends on where it heads. Sources: Whittaker, "On a new method of graduation" (1923); Eilers, "A perfect smoother" (2003),
-DOI 10.1021/ac034173t.
+Arc length is measured along the points smoothed a little: the steps of pixels make a line longer, by up to the root of two, and by how
+much depends on its direction.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from img2tri.shapes.place.padded_chains import Points, Unrolled, convolve
-from img2tri.types import Bools, Floats, Ints
+from img2tri.arrays import Bools, Floats, Ints, Points
+from img2tri.shapes.place.padded_chains import PaddedChains, convolve
 
 WIDTH = 0.4775  # of the scale: waves three scales long are left with half of their height
-STEPS = 2.2  # places: the Gaussian that takes the steps of pixels out of the length of a line
+ARC_BLUR = 2.2  # places: the Gaussian that takes the steps of pixels out of the length of a line
 LEAST_STEP = 1e-3  # px
-FIXED = 1e12  # how much more a node resists than all that pulls at it
-CONTINUED = 11  # places by which chains have to be continued: 3 for the third derivative, the rest for the Gaussian
+HELD = 1e12  # weight of a node that stays, relative to all that pulls at it
+PADDING = 11  # places of padding that chains need: 3 for the third derivative, the rest for the Gaussian
 
 
-class Elastic:
-    """Chains as elastic curves, each point of which is held where it is; nodes stay, or are not held at all if they are free.
+class SmoothingSpline:
+    """Smoothing splines through the points of chains; nodes stay where they are, or are not counted at all if they are free.
 
     Attributes
     ----------
@@ -33,17 +33,17 @@ class Elastic:
         (k - 1,) float64, the way along the arc from each place on the line to the next, in px; without meaning between chains.
     """
 
-    def __init__(self, line: Unrolled, points: Points, free: Bools) -> None:
+    def __init__(self, line: PaddedChains, points: Points, free: Bools) -> None:
         """Prepare what does not depend on the scale.
 
         Parameters
         ----------
         line, points
-            Chains laid out on a line, continued by `CONTINUED` places or more, and (k,) its points, from `Unrolled.points`.
+            Chains with a padding of `PADDING` places or more, and (k,) its points, from `PaddedChains.points`.
         free
             (n,) bool, the points that are free if they are nodes: there the curve goes on as the rest of the chain has it.
         """
-        self.steps = np.maximum(np.abs(np.diff(convolve(points, _gaussian(STEPS)))), LEAST_STEP)
+        self.steps = np.maximum(np.abs(np.diff(convolve(points, _gaussian(ARC_BLUR)))), LEAST_STEP)
         self._line, self._points, loose = line, points, free[line.end]
         self._loose = np.flatnonzero(line.node & loose)
         places, factors = _third_derivatives(line, self.steps, loose)
@@ -51,7 +51,8 @@ class Elastic:
         at, third = self._unknown[places], (factors * points[places]).sum(axis=0)
         factors = factors * line.sign[places]  # a place that repeats another one turned moves the other way
 
-        # Half of D' D by diagonals, entry (i, j) of it at [i - j, j]. Where two of four places stand for one unknown, both halves count.
+        # The lower half of D' D by diagonals, entry (i, j) of it at [i - j, j].
+        # Where two of four places stand for one unknown, both halves count.
         i, j = np.tril_indices(4)
         both = 1 + ((i != j)[:, None] & (at[i] == at[j]))
         entry = np.abs(at[i] - at[j]) * size + np.minimum(at[i], at[j])
@@ -62,7 +63,7 @@ class Elastic:
         own = np.flatnonzero(line.own)
         fixed, self._share = np.flatnonzero(line.node & ~loose), np.zeros(size)
         self._share[self._unknown[own]] = (self.steps[own - 1] + self.steps[own]) / 2
-        self._share[self._unknown[self._loose]] /= FIXED
+        self._share[self._unknown[self._loose]] /= HELD
         self._fixed = self._unknown[fixed]
 
     def smoothed(self, scale: float) -> tuple[Points, Points]:
@@ -86,7 +87,7 @@ class Elastic:
         stiffness = (WIDTH * scale) ** 6
         band = stiffness * self._bending
         band[0] += self._share
-        band[0, self._fixed] *= FIXED
+        band[0, self._fixed] *= HELD
         found: Floats = solveh_banded(band, stiffness * self._pull, lower=True, overwrite_ab=True, overwrite_b=True, check_finite=False)
         off: Points = self._line.sign * (found[:, 0] + 1j * found[:, 1])[self._unknown]
         slope = np.gradient(self._points + off)
@@ -95,7 +96,7 @@ class Elastic:
         return off, slope / np.maximum(np.abs(slope), 1e-12)
 
 
-def _third_derivatives(line: Unrolled, steps: Floats, free: Bools) -> tuple[Ints, Floats]:
+def _third_derivatives(line: PaddedChains, steps: Floats, free: Bools) -> tuple[Ints, Floats]:
     """Four places in a row (4, m), and their factors in the third derivative there, times the root of the stretch it stands for.
 
     Of a ring all rows count once, of an open chain those with their middle between its ends, but none that goes beyond a free end.
@@ -108,7 +109,7 @@ def _third_derivatives(line: Unrolled, steps: Floats, free: Bools) -> tuple[Ints
     return places, 6 * np.sqrt((a + b + c) / 3) * factors
 
 
-def _folded(line: Unrolled) -> Ints:
+def _folded(line: PaddedChains) -> Ints:
     """Give each place (k,) the number of its unknown, such that neighbours are near: open chains in order, rings folded flat.
 
     ::
@@ -127,8 +128,8 @@ def _folded(line: Unrolled) -> Ints:
     return np.asarray(number[line.original])
 
 
-def beyond(line: Unrolled, steps: Floats, marks: Bools, distance: float) -> Bools:
-    """Tell which places (k,) lie farther than `distance` px along the arc from all marked own places of their chain."""
+def farther_than(line: PaddedChains, steps: Floats, marks: Bools, distance: float) -> Bools:
+    """Tell which places (k,) lie farther than `distance` px along the arc from all marked places of their chain."""
     own = np.flatnonzero(line.own)
     chain, ring, at = line.chain[own], line.ring[own], marks[own]
     first = np.flatnonzero(np.diff(chain, prepend=-1))
@@ -146,9 +147,9 @@ def beyond(line: Unrolled, steps: Floats, marks: Bools, distance: float) -> Bool
     return np.asarray(far[line.original])
 
 
-def faded(line: Unrolled, values: Floats, reach: float) -> Floats:
-    """Let each value (k,) other than 0 fade to both sides, over about `reach` places; those near each other do not add up."""
-    fading = _gaussian(reach)
+def fade_out(line: PaddedChains, values: Floats, width: float) -> Floats:
+    """Let each value (k,) other than 0 fade to both sides, over about `width` places; those near each other do not add up."""
+    fading = _gaussian(width)
     fading /= fading.max()
     crowd = np.convolve((values != 0).astype(np.float64), fading, "same")[line.original]
     return np.asarray(np.convolve(values / np.maximum(crowd, 1), fading, "same")[line.original])

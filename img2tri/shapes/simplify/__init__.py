@@ -1,9 +1,11 @@
 """Dense outlines -> coarse ones with the wanted edge length, within the tolerance, of the same topology.
 
+In the order of the flow:
+
+simplification         A simplification: which dense points are kept as vertices, and how far each is offset; evenly spaced at first.
+vertex_offsets         Vertices offset along the normal, so that few chords approximate the outline.
+tolerance              Chords split until each is within the tolerance, clear of the others, and not too sharp.
+clearance              Which chords come too near to each other, or meet at too sharp an angle.
 area_preservation      Coarse outlines that enclose what the dense ones enclose.
-clearance              Which pieces of outlines come too near to each other, or meet at too sharp an angle.
-simplification         Outlines in coarsening: the dense outlines, and which of their points are kept, moved where.
-tangential_relocation  Breaks that slide along their outline, for the sake of the triangles beside them.
-tolerance              Dense outlines -> outlines with the wanted spacing, the topology kept.
-vertex_offsets         Breaks moved sideways, so that few pieces stand well for their runs.
+tangential_relocation  Vertices that slide along their outline, for the sake of the triangles beside them.
 """

@@ -1,34 +1,33 @@
-"""Which pieces of outlines come too near to each other, or meet at too sharp an angle.
+"""Which chords come too near to each other, or meet at too sharp an angle.
 
-Pieces are chords, each standing for a run of dense points that bulges from it by so much. Two pieces are clear of each other if they
-are farther apart than both bulges, and a gap. Of two pieces that were clear, one has to be *fresh* for them not to be: so only
-what is beside fresh pieces is looked at.
+Chords stand for arcs of dense points that deviate from them by so much. Two chords are clear of each other if they are farther apart
+than both deviations, and a gap. Only pairs with at least one changed, *fresh* chord can conflict anew, so only what is beside fresh
+chords is looked at.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from img2tri.shapes.place.padded_chains import Points, cross
-from img2tri.shapes.simplify.simplification import Draft
-from img2tri.types import Bools, Floats, Ints
+from img2tri.arrays import Bools, Floats, Ints, Points, as_rows, cross
+from img2tri.shapes.simplify.simplification import Simplification
 
-GAP = 0.25  # px, the least distance kept between pieces, over their bulges
+GAP = 0.25  # px, the least distance kept between chords, over their deviations
 FEW = 2**17  # pairs: rather looked at one by one than found in trees
-SHARP = np.cos(np.radians(50.0))  # pieces that meet at less than this angle are too sharp
+SHARP_TURN = np.cos(np.radians(50.0))  # chords that meet at less than this angle are too sharp
 
 
-def sharp_pieces(d: Draft, first: Ints, last: Ints, fresh: Bools) -> Bools:
-    """Tell which pieces meet another one at a sharp angle, at least one of the two being fresh."""
-    n, at, place = len(first), d.outlines.indices, d.places
-    touched = np.zeros(len(d.dense), bool)
+def sharp_chords(s: Simplification, first: Ints, last: Ints, fresh: Bools) -> Bools:
+    """Tell which chords meet another one at a sharp angle, at least one of the two being fresh."""
+    n, at, place = len(first), s.chains.indices, s.places
+    touched = np.zeros(len(s.snapped), bool)
     touched[at[first[fresh]]] = touched[at[last[fresh]]] = True
-    # All ends of pieces at these points, those at the same point one after the other.
+    # All ends of chords at these points, those at the same point one after the other.
     point = at[np.concatenate([first, last])]
     end = np.flatnonzero(touched[point])
     end = end[np.argsort(point[end], kind="stable")]
-    point, piece = point[end], end % n
-    heading = (place[last[piece]] - place[first[piece]]) * np.where(end < n, 1, -1)
+    point, chord = point[end], end % n
+    heading = (place[last[chord]] - place[first[chord]]) * np.where(end < n, 1, -1)
     length = np.abs(heading)
     sharp = np.zeros(n, bool)
     for step in range(1, len(end)):
@@ -36,26 +35,26 @@ def sharp_pieces(d: Draft, first: Ints, last: Ints, fresh: Bools) -> Bools:
         if not len(one):
             break
         other = one + step
-        narrow = (heading[one] * heading[other].conj()).real > SHARP * length[one] * length[other]
-        sharp[piece[one[narrow]]] = sharp[piece[other[narrow]]] = True
+        narrow = (heading[one] * heading[other].conj()).real > SHARP_TURN * length[one] * length[other]
+        sharp[chord[one[narrow]]] = sharp[chord[other[narrow]]] = True
     return sharp
 
 
-def crowded_pieces(d: Draft, first: Ints, last: Ints, fresh: Bools) -> Bools:
-    """Tell which pieces come too near to another one that is not their neighbour, at least one of the two being fresh."""
-    at, place, bulge = d.outlines.indices, d.places, d.bulge[first]
+def crowded_chords(s: Simplification, first: Ints, last: Ints, deviation: Floats, fresh: Bools) -> Bools:
+    """Tell which chords come too near to another one that is not their neighbour, at least one of the two being fresh."""
+    at, place = s.chains.indices, s.places
     a, b = place[first], place[last]
-    i, j = _within(a, b, GAP / 2 + bulge, fresh)
+    i, j = _within(a, b, GAP / 2 + deviation, fresh)
     head, tail = at[first], at[last]
     apart = (head[i] != head[j]) & (head[i] != tail[j]) & (tail[i] != head[j]) & (tail[i] != tail[j])
     i, j = i[apart], j[apart]
     distance = _distance(a[i], b[i], a[j], b[j])
-    near = np.flatnonzero(distance < GAP + bulge[i] + bulge[j])
+    near = np.flatnonzero(distance < GAP + deviation[i] + deviation[j])
     i, j, distance = i[near], j[near], distance[near]
-    # Along the same chain two pieces are only near if the way between them is long for that.
+    # Along the same chain two chords are only near if the way between them is long for that.
     crowded = np.zeros(len(first), bool)
     if len(i):
-        long = _way_between(d, first, last, i, j) > np.maximum(4 * distance, 1.0)
+        long = _way_between(s, first, last, i, j) > np.maximum(4 * distance, 1.0)
         crowded[i[long]] = crowded[j[long]] = True
     return crowded
 
@@ -73,8 +72,8 @@ def _within(a: Points, b: Points, reach: Floats, fresh: Bools) -> tuple[Ints, In
 def _beside(middle: Points, half: Floats, fresh: Bools) -> tuple[Ints, Ints]:
     """Pairs of squares around their middles that meet, one of them fresh, each pair once: found by looking at all."""
     chosen = np.flatnonzero(fresh)
-    room = half[chosen, None] + half
-    meet = (np.abs(middle.real[chosen, None] - middle.real) <= room) & (np.abs(middle.imag[chosen, None] - middle.imag) <= room)
+    apart = half[chosen, None] + half
+    meet = (np.abs(middle.real[chosen, None] - middle.real) <= apart) & (np.abs(middle.imag[chosen, None] - middle.imag) <= apart)
     i, j = np.nonzero(meet)
     i = chosen[i]
     once = (i < j) | ~fresh[j]
@@ -85,7 +84,7 @@ def _near(middle: Points, half: Floats, fresh: Bools) -> tuple[Ints, Ints]:
     """Pairs of squares that may meet, each once, found in trees: one for each class of sizes, as a few large ones make all look far."""
     from scipy.spatial import cKDTree
 
-    places, chosen = np.stack([middle.real, middle.imag], axis=1), np.flatnonzero(fresh)
+    places, chosen = as_rows(middle), np.flatnonzero(fresh)
     size = 4.0 ** np.ceil(np.log2(half) / 2)
     # A tree for each class; where few segments are fresh, of those only that are anywhere near them.
     classes = []
@@ -134,14 +133,14 @@ def to_segment(p: Points, a: Points, b: Points) -> Floats:
     return np.asarray(np.abs(off - share * along))
 
 
-def _way_between(d: Draft, first: Ints, last: Ints, i: Ints, j: Ints) -> Floats:
-    """Length of the chain between two pieces, infinite if they lie on different chains."""
-    z, starts, chain = d.dense[d.outlines.indices], d.outlines.starts, d.links.chain
+def _way_between(s: Simplification, first: Ints, last: Ints, i: Ints, j: Ints) -> Floats:
+    """Length of the chain between two chords, infinite if they lie on different chains."""
+    z, starts, chain = s.dense, s.chains.starts, s.chains.chain
     arc = np.concatenate([[0], np.cumsum(np.abs(np.diff(z)))])
     early, late = np.minimum(first[i], first[j]), np.maximum(first[i], first[j])
     end = np.where(first[i] < first[j], last[i], last[j])
     way = arc[late] - arc[end]
     on = chain[early]
     around = arc[starts[on + 1] - 1] - arc[starts[on]] - (arc[np.maximum(last[i], last[j])] - arc[early])
-    way = np.where(d.links.rings[on], np.minimum(way, around), way)
+    way = np.where(s.chains.rings[on], np.minimum(way, around), way)
     return np.where(chain[early] == chain[late], way, np.inf)

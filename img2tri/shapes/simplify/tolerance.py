@@ -1,176 +1,224 @@
-"""Dense outlines -> outlines with the wanted spacing, the topology kept.
+"""Polyline simplification within a tolerance, the topology kept: chords are split until each is good enough.
 
-A chain of many crossings is replaced by few *pieces*: chords between *breaks*, each standing for the run of dense points
-between them. Coarsening is optimistic, and checked:
+Simplification is optimistic, and checked:
 
-1. breaks are set evenly along each chain, then moved sideways so that the chords enclose the area of the outline;
-2. a piece whose run leaves its chord by more than the tolerance leans towards it, see `leaning`; if that is not enough, it
-   is split where it is farthest;
-3. pieces that come too near to each other, or meet at too sharp an angle, are split too.
+1. vertices are kept evenly along each chain, then offset along the normal so that the chords enclose the area of the outline;
+2. a chord whose arc leaves it by more than the tolerance is moved towards the arc, see `vertex_offsets`; if that is not enough, it is
+   split where the arc is farthest, as Douglas and Peucker do ("Algorithms for the reduction of the number of points required to
+   represent a digitized line or its caricature", 1973, DOI 10.3138/FM57-6770-U75U-7727);
+3. chords that come too near to each other, or meet at too sharp an angle, are split too.
 
-Where a piece is down to two neighbouring crossings and still too near to another one, its points go back to the middles of
-their links. That is the safe end of the loop: chains with all crossings in the middle are half a pixel apart and turn by
-at most a right angle at a time.
+Where a chord is down to two neighbouring crossings and still too near to another one, its points are *snapped*: they go back to the
+middles of their crack edges. That is the safe end of the loop: chains with all crossings in the middle are half a pixel apart and turn
+by at most a right angle at a time.
 
-Why this keeps the topology: a chord and its run lie within the run's bulge of the chord; pieces are farther apart than
-their bulges together, but for neighbours on a chain, which together turn no loop. So the runs can be pulled straight one
+Why this keeps the topology: a chord and its arc lie within the arc's deviation from the chord; chords are farther apart than
+their deviations together, but for neighbours on a chain, which together turn no loop. So the arcs can be pulled straight one
 by one without one passing through another.
 """
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import replace
 
 import numpy as np
 
-from img2tri.shapes.place.padded_chains import Points
-from img2tri.shapes.simplify.clearance import crowded_pieces, sharp_pieces, to_segment
-from img2tri.shapes.simplify.simplification import Draft
-from img2tri.shapes.simplify.vertex_offsets import towards_runs
-from img2tri.types import Ints
+from img2tri.arrays import Bools, Floats, Ints, Points, as_rows, runs
+from img2tri.errors import bounded
+from img2tri.shapes.simplify.clearance import crowded_chords, sharp_chords, to_segment
+from img2tri.shapes.simplify.simplification import SAME_PLACE, Simplification
+from img2tri.shapes.simplify.vertex_offsets import offset_towards_arcs
 
-LEANS, ENOUGH = 4, 0.95  # how often pieces lean towards their runs at first, to come within this share of the tolerance
+LEANS, ENOUGH = 4, 0.95  # how often chords are moved towards their arcs at first, to come within this share of the tolerance
 LEAST_MOVE = 1e-4  # px
-SHORT = 0.3  # px, pieces shorter than this are not left
+SHORTEST_CHORD = 0.3  # px, chords shorter than this are not left
+MOST_ROUNDS = 1000  # of splitting; thirty are many
 
 
-def settle(d: Draft, *, tolerance: float) -> Draft:
-    """Split pieces until each is within `tolerance` px of its run, clear of the others, and not too sharp."""
-    d, leans = _copied(d), LEANS
-    while True:
-        _split_bulging(d, tolerance, leans)
-        leans -= 1  # so that it ends: a break that leans away from its point may have to return there
-        if _return_to_points(d, tolerance):
-            continue
-        first, last = d.pieces
-        fresh = d.tested[first] != last
-        if not fresh.any():
-            return d
-        conflicting = crowded_pieces(d, first, last, fresh) | sharp_pieces(d, first, last, fresh)
-        short = np.abs(d.places[last] - d.places[first]) < SHORT
-        d.tested[first] = last
-        divisible = last - first > 1
-        _split(d, first[conflicting & divisible], last[conflicting & divisible])
-        stuck = (conflicting | short) & ~divisible
-        _reset(d, np.concatenate([first[stuck], last[stuck]]), tolerance)
+def enforce_tolerance(s: Simplification, *, tolerance: float, passed: Simplification | None = None) -> Simplification:
+    """Split chords until each is within `tolerance` px of its arc, clear of the others, and not too sharp.
+
+    Parameters
+    ----------
+    s
+        What is to be made good enough.
+    tolerance
+        In px.
+    passed
+        A result of this function for the same outlines: chords that it has too are not tested again, but against new ones.
+    """
+    return _Loop(s, tolerance, passed).run()
 
 
-def refine(d: Draft, places: Points, *, within: float, tolerance: float) -> Draft:
-    """Split the pieces within `within` px of some places; those that cannot be split go back to the middle."""
+def split_near(s: Simplification, places: Points, *, within: float, tolerance: float) -> Simplification:
+    """Split the chords within `within` px of some places; the ends of those that cannot be split are snapped."""
     from scipy.spatial import cKDTree
 
-    d = _copied(d)
-    first, last = d.pieces
-    z = d.places
-    near = np.zeros(len(z), bool)
-    tree = cKDTree(np.stack([places.real, places.imag], axis=1))
-    distance, _ = tree.query(np.stack([z.real, z.imag], axis=1), distance_upper_bound=within)
-    near[np.isfinite(distance)] = True
-    count = np.concatenate([[0], np.cumsum(near)])
-    hit = count[last + 1] > count[first]
+    first, last = s.chords
+    distance, _ = cKDTree(as_rows(places)).query(as_rows(s.places), distance_upper_bound=within)
+    hit = _any_between(np.isfinite(np.asarray(distance)), first, last)
     divisible = last - first > 1
-    _split(d, first[hit & divisible], last[hit & divisible])
+    s = _split(s, first[hit & divisible], last[hit & divisible])
     stuck = hit & ~divisible
-    _reset(d, np.concatenate([first[stuck], last[stuck]]), tolerance)
-    return d
+    return _snap(s, np.concatenate([first[stuck], last[stuck]]), tolerance)
 
 
-def _copied(d: Draft) -> Draft:
-    """Return a draft whose arrays may be changed."""
-    names = ("reset", "breaks", "moved", "measured", "tested", "bulge")
-    return replace(d, **{name: getattr(d, name).copy() for name in names})
+def deviations(s: Simplification, first: Ints, last: Ints) -> Floats:
+    """Greatest distance between each chord and its arc, in px, the dense points of its ends included."""
+    found, *_ = _measure(s, first, last)
+    return found
 
 
-def _split_bulging(d: Draft, tolerance: float, leans: int) -> None:
-    """Measure new pieces; those that leave the tolerance lean towards their runs so often, then are split, until there are none."""
-    z = d.dense[d.outlines.indices]
-    for attempt in itertools.count():
-        first, last = d.pieces
-        fresh = d.measured[first] != last
-        first, last = first[fresh], last[fresh]
-        if not len(first):
-            return
-        # Points on the way to the middle of their link are still on it, others may have left it sideways.
-        astray = [np.where(d.reset[d.outlines.indices[end]], 0, np.abs(d.moved[end])) for end in (first, last)]
-        inner = last - first - 1
-        which = np.repeat(np.arange(len(first)), inner)
-        at = first[which] + 1 + np.arange(len(which)) - np.repeat(np.cumsum(inner) - inner, inner)
-        a, b = z[first] + d.moved[first], z[last] + d.moved[last]
-        distance = to_segment(z[at], a[which], b[which])
-        d.bulge[first] = np.maximum(*astray)
-        d.measured[first] = last
-        some = np.flatnonzero(inner)
-        if not len(some):
-            return
-        worst = np.maximum.reduceat(distance, (np.cumsum(inner) - inner)[some])
-        d.bulge[first[some]] = np.maximum(d.bulge[first[some]], worst)
-        highest = np.zeros(len(first))
-        highest[some] = worst
-        excess = highest - ENOUGH * tolerance
-        if attempt < leans and (highest > tolerance).any():
-            farthest = np.flatnonzero((distance == highest[which]) & (excess[which] > 0))
-            far = which[farthest]
-            if _moved(d, towards_runs(d, first[far], last[far], at[farthest], excess[far], tolerance), first[excess > 0]):
+class _Loop:
+    """A simplification in the making, and what is known of its chords, each by its first entry.
+
+    Attributes
+    ----------
+    measured, tested
+        (k,) int64, the last entry of the chord whose deviation is known, that passed all tests; -1 if there is none.
+    deviation
+        (k,) float64, of each measured chord.
+    """
+
+    def __init__(self, s: Simplification, tolerance: float, passed: Simplification | None) -> None:
+        k = len(s.kept)
+        self.s, self.tolerance, self.leans = s, tolerance, LEANS
+        self.measured, self.tested, self.deviation = np.full(k, -1), np.full(k, -1), np.zeros(k)
+        if passed is not None:
+            first, last = _in_both(s, passed)
+            self.measured[first] = self.tested[first] = last
+            self.deviation[first] = deviations(s, first, last)
+
+    def run(self) -> Simplification:
+        for _ in bounded("tolerance of outlines", MOST_ROUNDS):
+            self._split_deviating()
+            self.leans -= 1  # so that it ends: a vertex that is moved away from its point may have to return there
+            if self._return_to_points():
                 continue
-        split = at[(distance == highest[which]) & (highest[which] > tolerance)]
-        d.breaks[split] = True
+            s, (first, last) = self.s, self.s.chords
+            fresh = self.tested[first] != last
+            if not fresh.any():
+                break
+            conflicting = crowded_chords(s, first, last, self.deviation[first], fresh) | sharp_chords(s, first, last, fresh)
+            short = np.abs(s.places[last] - s.places[first]) < SHORTEST_CHORD
+            self.tested[first] = last
+            divisible = last - first > 1
+            stuck = (conflicting | short) & ~divisible
+            self.s = _split(s, first[conflicting & divisible], last[conflicting & divisible])
+            self._change(_snap(self.s, np.concatenate([first[stuck], last[stuck]]), self.tolerance))
+        return self.s
+
+    def _split_deviating(self) -> None:
+        """Measure new chords. Those beyond the tolerance are moved towards their arcs so often, then split, until there are none."""
+        for attempt in range(max(self.leans, 0) + len(self.s.kept) + 1):  # each split shortens an arc
+            s, (first, last) = self.s, self.s.chords
+            fresh = self.measured[first] != last
+            first, last = first[fresh], last[fresh]
+            if not len(first):
+                return
+            self.deviation[first], which, at, distance, worst = _measure(s, first, last)
+            self.measured[first] = last
+            excess = worst - ENOUGH * self.tolerance
+            if attempt < self.leans and (worst > self.tolerance).any():
+                farthest = np.flatnonzero((distance == worst[which]) & (excess[which] > 0))
+                far = which[farthest]
+                offset = offset_towards_arcs(s, first[far], last[far], at[farthest], excess[far], self.tolerance)
+                if self._move(offset, first[excess > 0]):
+                    continue
+            kept = s.kept.copy()
+            kept[at[(distance == worst[which]) & (worst[which] > self.tolerance)]] = True
+            self.s = replace(s, kept=kept)
+
+    def _move(self, offset: Points, doubtful: Ints) -> bool:
+        """Move vertices; their chords, and those that begin at doubtful entries, are to be tested again. False if nothing moves."""
+        far = np.abs(offset - self.s.offset) > LEAST_MOVE
+        if not far.any():
+            return False
+        self.s = replace(self.s, offset=offset)
+        first, last = self.s.chords
+        self._forget(np.concatenate([first[far[first] | far[last]], doubtful]))
+        return True
+
+    def _return_to_points(self) -> bool:
+        """Let vertices that were moved along their chain go back, where their own point lies too far from the chords they end."""
+        s = self.s
+        astray = (np.abs(s.offset) > self.tolerance) & ~s.snapped_entries
+        first, last = s.chords
+        ends = astray[first] | astray[last]
+        first, last = first[ends], last[ends]
+        if not len(first):
+            return False
+        place, distance = s.places, np.full(len(s.dense), np.inf)
+        for end in (first, last):
+            distance[end] = np.minimum(distance[end], to_segment(s.dense[end], place[first], place[last]))
+        back = astray & (distance > self.tolerance) & np.isfinite(distance)
+        self.s = replace(s, offset=np.where(back, 0, s.offset))
+        self._forget(first[back[first] | back[last]])
+        return bool(back.any())
+
+    def _change(self, s: Simplification) -> None:
+        """Take over a simplification of which vertices were snapped."""
+        first, last = s.chords
+        new = (s.offset != self.s.offset) | (s.snapped_entries & ~self.s.snapped_entries)
+        self.s = s
+        self._forget(first[_any_between(new, first, last)])
+
+    def _forget(self, first: Ints) -> None:
+        self.measured[first] = self.tested[first] = -1
 
 
-def _moved(d: Draft, moved: Points, doubtful: Ints) -> bool:
-    """Move breaks; their pieces, and those that begin at doubtful entries, are to be tested again. False if nothing moves."""
-    far = np.abs(moved - d.moved) > LEAST_MOVE
-    if not far.any():
-        return False
-    d.moved[:] = moved
-    first, last = d.pieces
-    stale = np.concatenate([first[far[first] | far[last]], doubtful])
-    d.measured[stale] = d.tested[stale] = -1
-    return True
+def _measure(s: Simplification, first: Ints, last: Ints) -> tuple[Floats, Ints, Ints, Floats, Floats]:
+    """Measure chords: (c,) deviations; of all inner entries of their arcs (i,) chord, entry, distance; (c,) the greatest distance."""
+    # Points on the way to the middle of their crack edge are still on it, others may have left it sideways.
+    snapped = s.snapped_entries
+    off = [np.where(snapped[end], 0, np.abs(s.offset[end])) for end in (first, last)]
+    inner = last - first - 1
+    which, place = runs(inner)
+    at = first[which] + 1 + place
+    a, b = s.dense[first] + s.offset[first], s.dense[last] + s.offset[last]
+    distance = to_segment(s.dense[at], a[which], b[which])
+    worst, some = np.zeros(len(first)), np.flatnonzero(inner)
+    if len(some):
+        worst[some] = np.maximum.reduceat(distance, (np.cumsum(inner) - inner)[some])
+    return np.maximum(np.maximum(*off), worst), which, at, distance, worst
 
 
-def _return_to_points(d: Draft, tolerance: float) -> bool:
-    """Let breaks that were moved along their chain go back, where their own point lies too far from the pieces they end."""
-    astray = (np.abs(d.moved) > tolerance) & ~d.reset[d.outlines.indices]
-    first, last = d.pieces
-    ends = astray[first] | astray[last]
-    first, last = first[ends], last[ends]
-    if not len(first):
-        return False
-    z, place = d.dense[d.outlines.indices], d.places
-    distance = np.full(len(z), np.inf)
-    for end in (first, last):
-        distance[end] = np.minimum(distance[end], to_segment(z[end], place[first], place[last]))
-    back = astray & (distance > tolerance) & np.isfinite(distance)
-    d.moved[back] = 0
-    stale = first[back[first] | back[last]]
-    d.measured[stale] = d.tested[stale] = -1
-    return bool(back.any())
+def _in_both(s: Simplification, other: Simplification) -> tuple[Ints, Ints]:
+    """Chords that two simplifications of the same outlines share, their ends at the same places."""
+    first, last = s.chords
+    follows = np.full(len(s.kept), -1)
+    follows[other.chords[0]] = other.chords[1]
+    same: Bools = (np.abs(other.offset - s.offset) < SAME_PLACE) & (other.snapped_entries == s.snapped_entries)
+    both = (follows[first] == last) & same[first] & same[last]
+    return first[both], last[both]
 
 
-def _split(d: Draft, first: Ints, last: Ints) -> None:
-    """Split pieces in the middle."""
-    d.breaks[(first + last) // 2] = True
+def _split(s: Simplification, first: Ints, last: Ints) -> Simplification:
+    """Split chords in the middle."""
+    kept = s.kept.copy()
+    kept[(first + last) // 2] = True
+    return replace(s, kept=kept)
 
 
-def _reset(d: Draft, entries: Ints, tolerance: float) -> None:
-    """Let points go back to the middle of their links, as far as the tolerance allows; their pieces are to be tested again."""
-    chosen = np.zeros(len(d.dense), bool)
-    chosen[d.outlines.indices[entries]] = True
-    touched = np.flatnonzero((chosen & ~d.kept)[d.outlines.indices])
-    at = d.outlines.indices[touched]
-    way = d.links.middle[at] - d.dense[at]
+def _snap(s: Simplification, entries: Ints, tolerance: float) -> Simplification:
+    """Let points go back to the middles of their crack edges, as far as the tolerance allows."""
+    indices = s.chains.indices
+    chosen = np.zeros(len(s.snapped), bool)
+    chosen[indices[entries]] = True
+    touched = np.flatnonzero((chosen & ~s.pinned)[indices])
+    at = indices[touched]
+    way = s.dual_edges.middle[at] - s.dense[touched]
     way *= np.minimum(1, tolerance / np.maximum(np.abs(way), 1e-12))
     # Those that have gone back go on if there is more tolerance than there was.
-    farther = ~d.reset[at] | (np.abs(way) > np.abs(d.moved[touched]) + LEAST_MOVE)
+    farther = ~s.snapped[at] | (np.abs(way) > np.abs(s.offset[touched]) + LEAST_MOVE)
     touched, way = touched[farther], way[farther]
-    if not len(touched):
-        return
-    d.reset[d.outlines.indices[touched]] = True
-    d.moved[touched] = way
-    first, last = d.pieces
-    new = np.zeros(len(d.moved), bool)
-    new[touched] = True
-    count = np.concatenate([[0], np.cumsum(new)])
-    stale = first[count[last + 1] > count[first]]
-    d.measured[stale] = d.tested[stale] = -1
+    snapped, offset = s.snapped.copy(), s.offset.copy()
+    snapped[indices[touched]] = True
+    offset[touched] = way
+    return replace(s, snapped=snapped, offset=offset)
+
+
+def _any_between(marks: Bools, first: Ints, last: Ints) -> Bools:
+    """Tell from which first to which last entry, both included, there is a mark."""
+    count = np.concatenate([[0], np.cumsum(marks)])
+    return np.asarray(count[last + 1] > count[first])

@@ -1,5 +1,5 @@
-"""How long edges should be: one size function, limited in growth.
+"""How long edges should be.
 
-outline_sizes  How long the pieces of outlines should be, at each dense point.
-size_field     What a user says of edge lengths -> a field of lengths over the image, whose growth is limited.
+size_field     What a user says of edge lengths -> a size field over the image, whose growth is limited.
+outline_sizes  How long the chords of outlines should be, at each dense point.
 """

@@ -1,7 +1,8 @@
-"""What a user says of edge lengths -> a field of lengths over the image, whose growth is limited.
+"""What a user says of edge lengths -> a size field over the image, whose growth is limited.
 
 One length for all needs no field. A length for each region, an array on the image grid, or a function of places becomes a grid over
-the image, in which no length grows faster than the gradation per unit of distance: from each step of a geometric scale of
+the image, in which no length grows faster than the gradation per unit of distance (gradient limiting; Persson, "Mesh size functions
+for implicit geometries and PDE-based gradient limiting", 2006, DOI 10.1007/s00366-006-0014-1): from each step of a geometric scale of
 lengths, a distance transform says how far it reaches. What is given for each pixel gets cells as small as these, a function
 cells as small as its lengths need.
 """
@@ -16,19 +17,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from img2tri.arrays import Floats
 from img2tri.errors import ParameterError
-from img2tri.types import Floats, Frame
+from img2tri.types import Frame
 
-CELLS = 2**20  # of the grid at most
-FIRST = 2**12  # cells, in which a function is asked first, to see how short its lengths are
-ENOUGH = 1.2  # cells should be as small as the shortest length; those larger by this factor are small enough
-SCALE = 1.1  # between the lengths whose reach is looked at
+MOST_FIELD_CELLS = 2**20  # of the grid at most
+FIRST_CELLS = 2**12  # cells, in which a function is asked first, to see how short its lengths are
+SMALL_ENOUGH = 1.2  # cells should be as small as the shortest length; those larger by this factor are small enough
+LENGTH_STEP = 1.1  # between the lengths whose reach is looked at
 
 EdgeLength = float | str | Mapping[int, float | str] | Callable[[Floats], Floats] | NDArray[Any]
 
 
 @dataclass(frozen=True, eq=False)
-class Field:
+class SizeField:
     """Edge lengths over the image, in px.
 
     Attributes
@@ -51,9 +53,9 @@ class Field:
         return result
 
 
-def length_field(
+def size_field(
     wanted: EdgeLength, frame: Frame, labels: NDArray[Any], *, gradation: float, name: str = "edge_length"
-) -> tuple[float, Field | None]:
+) -> tuple[float, SizeField | None]:
     """Return the greatest length in px, and the field of lengths, or None where it is the same everywhere.
 
     Parameters
@@ -69,7 +71,7 @@ def length_field(
     Examples
     --------
     >>> labels = np.repeat([[1, 2]], 20, axis=0).repeat(20, axis=1)
-    >>> longest, field = length_field({1: 2, 2: 8}, Frame((20, 40)), labels, gradation=0.2)
+    >>> longest, field = size_field({1: 2, 2: 8}, Frame((20, 40)), labels, gradation=0.2)
     >>> round(longest), field(np.array([[1.0, 10.0], [30.0, 10.0]])).round()
     (6, array([2., 4.]))
     """
@@ -87,19 +89,19 @@ def length_field(
             raise ParameterError(f"{name}: expected an array of numbers, found {pixels.dtype}")
         lengths, cell = _shortest(_checked(name, np.asarray(pixels, np.float64)), frame)
     grid = _limited(lengths / frame.pixel, gradation * cell)
-    return float(grid.max()), Field(grid, cell)
+    return float(grid.max()), SizeField(grid, cell)
 
 
 def _cells(frame: Frame, least: float) -> tuple[int, int, float]:
     """How many rows and columns of cells at least so wide there are, and how wide they are, in px."""
     width, height = frame.shape[1] * frame.spacing[0] / frame.pixel, frame.shape[0] * frame.spacing[1] / frame.pixel
-    cell = max(least, math.sqrt(width * height / CELLS))
+    cell = max(least, math.sqrt(width * height / MOST_FIELD_CELLS))
     return max(1, round(height / cell)), max(1, round(width / cell)), cell
 
 
 def _asked(name: str, wanted: Callable[[Floats], Floats], frame: Frame) -> tuple[Floats, float]:
     """Ask a function for the lengths in cells, and again in smaller ones as long as these are large for its shortest length."""
-    least = max(1.0, math.sqrt(math.prod(frame.shape) * math.prod(frame.spacing) / FIRST) / frame.pixel)
+    least = max(1.0, math.sqrt(math.prod(frame.shape) * math.prod(frame.spacing) / FIRST_CELLS) / frame.pixel)
     while True:
         ny, nx, cell = _cells(frame, least)
         y, x = (np.mgrid[:ny, :nx] + 0.5) * cell
@@ -107,7 +109,7 @@ def _asked(name: str, wanted: Callable[[Floats], Floats], frame: Frame) -> tuple
         if lengths.shape != (ny * nx,):
             raise ParameterError(f"{name}: expected the function to return ({ny * nx},) lengths, found shape {lengths.shape}")
         least = max(1.0, float(_checked(name, lengths).min()) / frame.pixel)
-        if cell <= ENOUGH * _cells(frame, least)[2]:
+        if cell <= SMALL_ENOUGH * _cells(frame, least)[2]:
             return lengths.reshape(ny, nx), cell
 
 
@@ -154,10 +156,10 @@ def _limited(grid: Floats, growth: float) -> Floats:
         return grid  # from no cell to one beside it, so from none to any
     low, high = float(grid.min()), float(grid.max())
     result = grid
-    for level in low * SCALE ** np.arange(np.ceil(np.log(high / low) / np.log(SCALE)) if high > low else 0):
-        far = (grid > level * SCALE**0.5).astype(np.uint8)
+    for level in low * LENGTH_STEP ** np.arange(np.ceil(np.log(high / low) / np.log(LENGTH_STEP)) if high > low else 0):
+        far = (grid > level * LENGTH_STEP**0.5).astype(np.uint8)
         if far.any():
             # The last bit depends on how many threads shared the work: distances are roots of whole numbers.
             distance = np.sqrt(np.rint(np.square(cv2.distanceTransform(far, cv2.DIST_L2, cv2.DIST_MASK_PRECISE), dtype=np.float64)))
-            result = np.minimum(result, level * SCALE**0.5 + growth * distance)
+            result = np.minimum(result, level * LENGTH_STEP**0.5 + growth * distance)
     return np.minimum(result, grid)

@@ -1,6 +1,6 @@
-"""Label map -> the edges between pixels of different labels, joined to chains.
+"""Label map -> chains: the sides between pixels of different regions, joined in the order in which outlines run.
 
-chains       Cracks -> chains: the order in which the outlines run.
-crack_edges  Label map -> cracks, and how they follow each other.
-dual_edges   Chains of cracks, laid out in the plane: what the places of an outline's points may be.
+crack_edges  Label map -> crack edges, and how they follow each other.
+chains       Crack edges -> chains from node to node, or rings.
+dual_edges   Chains, laid out in the plane: between which bounds the points of an outline may lie.
 """

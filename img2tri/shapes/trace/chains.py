@@ -1,4 +1,4 @@
-"""Cracks -> chains: the order in which the outlines run.
+"""Crack edges -> chains: the order in which the outlines run.
 
 A chain runs from node to node, or is a ring. It is traced once, and shared by the regions on its two sides: whatever
 is done to it later is done for both.
@@ -10,54 +10,54 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from img2tri.shapes.trace.crack_edges import NODE, Cracks
-from img2tri.types import Bools, Ints
+from img2tri.arrays import Bools, Ints
+from img2tri.shapes.trace.crack_edges import NODE, CrackEdges
 
 
 @dataclass(frozen=True, eq=False)
-class Chains:
+class Sequences:
     """Items in the order in which they follow each other.
 
     Attributes
     ----------
     order
-        (n,) int64, all items, chain after chain.
+        (n,) int64, all items, sequence after sequence.
     starts
-        (c + 1,) int64: chain i is ``order[starts[i]:starts[i + 1]]``.
-    rings
-        (c,) bool, the chain closes on itself; it starts at its item of the lowest number.
+        (c + 1,) int64: sequence i is ``order[starts[i]:starts[i + 1]]``.
+    closed
+        (c,) bool, the last item of the sequence is followed by its first, which has the lowest number of them.
     """
 
     order: Ints
     starts: Ints
-    rings: Bools
+    closed: Bools
 
     @property
-    def chain(self) -> Ints:
-        """(n,) the chain each entry of `order` belongs to."""
-        return np.repeat(np.arange(len(self.rings)), np.diff(self.starts))
+    def sequence(self) -> Ints:
+        """(n,) the sequence each entry of `order` belongs to."""
+        return np.repeat(np.arange(len(self.closed)), np.diff(self.starts))
 
 
-def trace(cracks: Cracks) -> Chains:
-    """Order the cracks into chains.
+def trace_chains(crack_edges: CrackEdges) -> Sequences:
+    """Order the crack edges into chains.
 
     Examples
     --------
-    >>> from img2tri.shapes.trace.crack_edges import find_cracks
-    >>> trace(find_cracks(np.pad([[True]], 1))).starts
+    >>> from img2tri.shapes.trace.crack_edges import find_crack_edges
+    >>> trace_chains(find_crack_edges(np.pad([[True]], 1))).starts
     array([0, 4])
     """
-    return walk(cracks.successor)
+    return follow(crack_edges.successor)
 
 
-def walk(successor: Ints) -> Chains:
-    """Order items into chains, given the item that follows each, or `NODE` where nothing does.
+def follow(successor: Ints) -> Sequences:
+    """Order items into sequences, given the item that follows each, or `NODE` where nothing does.
 
-    Each ring is cut open, all chains are strung on one long path, and a graph search walks it in linear time.
+    Each closed sequence is cut open, all are strung on one long path, and a graph search walks it in linear time.
 
     Examples
     --------
-    >>> walk(np.array([3, 2, 1, NODE])).order
+    >>> follow(np.array([3, 2, 1, NODE])).order
     array([0, 3, 1, 2])
     """
     from scipy.sparse import csr_array
@@ -65,7 +65,7 @@ def walk(successor: Ints) -> Chains:
 
     n = len(successor)
     if n == 0:
-        return Chains(np.zeros(0, np.int64), np.zeros(1, np.int64), np.zeros(0, bool))
+        return Sequences(np.zeros(0, np.int64), np.zeros(1, np.int64), np.zeros(0, bool))
     path = successor.copy()
     follows = np.flatnonzero(path != NODE)
     has_predecessor = np.zeros(n, bool)
@@ -74,18 +74,18 @@ def walk(successor: Ints) -> Chains:
     def graph(sources: Ints, targets: Ints) -> csr_array:
         return csr_array((np.ones(len(sources), np.int8), (sources, targets)), shape=(n, n))
 
-    _, chain = connected_components(graph(follows, path[follows]), directed=False)
-    by_chain = np.lexsort((has_predecessor, chain))
-    begin = by_chain[np.flatnonzero(np.diff(chain[by_chain], prepend=-1))]
-    rings = has_predecessor[begin]
+    _, sequence = connected_components(graph(follows, path[follows]), directed=False)
+    by_sequence = np.lexsort((has_predecessor, sequence))
+    begin = by_sequence[np.flatnonzero(np.diff(sequence[by_sequence], prepend=-1))]
+    closed = has_predecessor[begin]
     opens = np.zeros(n, bool)
     opens[begin] = True
     last = np.flatnonzero((path == NODE) | opens[path])
     end = np.zeros(len(begin), np.int64)
-    end[chain[last]] = last
+    end[sequence[last]] = last
     path[end[:-1]] = begin[1:]
     path[end[-1]] = NODE
     follows = np.flatnonzero(path != NODE)
     order = depth_first_order(graph(follows, path[follows]), begin[0], return_predecessors=False).astype(np.int64)
-    starts = np.append(np.flatnonzero(np.diff(chain[order], prepend=-1)), n)
-    return Chains(order, starts, rings)
+    starts = np.append(np.flatnonzero(np.diff(sequence[order], prepend=-1)), n)
+    return Sequences(order, starts, closed)

@@ -1,11 +1,11 @@
-"""Label map -> cracks, and how they follow each other.
+"""Label map -> crack edges, and how they follow each other.
 
-A *crack* is the side shared by two pixels of different regions, or the side of a region's pixel on the frame of the
-image. The outlines are made of cracks end to end; each will become one *crossing*, a point where the outline passes
-between two pixel centres. Cracks meet at corners of pixels, where four pixels lie::
+A *crack edge* is the side shared by two pixels of different regions, or the side of a region's pixel on the frame of the image
+(inter-pixel boundary; Kovalevsky, "Finite topology as applied to image analysis", 1989, DOI 10.1016/0734-189X(89)90165-5). Outlines
+are made of crack edges end to end. Crack edges meet at corners of pixels, where four pixels lie::
 
-        a | b          two cracks: the outline passes
-       ---+---         three, or four with neither diagonal equal: a junction; here called a node
+        a | b          two crack edges: the outline passes
+       ---+---         three, or four with neither diagonal equal: a junction of regions, a *node*
         c | d          four with an equal diagonal: a checkerboard; one diagonal is joined, outlines pass twice
 
 Nodes are also where an outline reaches the frame, and the four corners of the image: the frame stays straight.
@@ -22,14 +22,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from img2tri.types import Ints
+from img2tri.arrays import Bools, Ints
 
 NODE = -1
 
 
 @dataclass(frozen=True, eq=False)
-class Cracks:
-    """All cracks of a label map, each directed so that the lower region is on its left.
+class CrackEdges:
+    """All crack edges of a label map, each directed so that the region of the lower number is on its left.
 
     The corners of pixels are numbered row by row: corner (r, c) of an image w pixels wide is ``r * (w + 1) + c``.
 
@@ -38,13 +38,13 @@ class Cracks:
     shape
         (h, w) of the label map.
     tail, head
-        (n,) int64, the corners a crack runs from and to.
+        (n,) int64, the corners of pixels a crack edge runs from and to.
     left, right
         (n,) int64, region numbers on either side, seen with y up or down as asked; 0 is what is not meshed.
     successor
-        (n,) int64, the crack that follows, or `NODE` where the crack ends in a node.
+        (n,) int64, the crack edge that follows, or `NODE` where it ends in a node.
     on_frame
-        (n,) bool, the crack lies on the frame of the image.
+        (n,) bool, it lies on the frame of the image.
     labels
         (k,) the image's own label of each region number; entry 0 only keeps the place.
     """
@@ -55,12 +55,12 @@ class Cracks:
     left: Ints
     right: Ints
     successor: Ints
-    on_frame: NDArray[np.bool_]
+    on_frame: Bools
     labels: Ints
 
 
-def find_cracks(labels: NDArray[Any], *, background: int | None = 0, upward: bool = True, connectivity: int = 4) -> Cracks:
-    """Find the cracks between the regions of a label map, and how they follow each other.
+def find_crack_edges(labels: NDArray[Any], *, background: int | None = 0, upward: bool = True, connectivity: int = 4) -> CrackEdges:
+    """Find the crack edges between the regions of a label map, and how they follow each other.
 
     Parameters
     ----------
@@ -76,26 +76,26 @@ def find_cracks(labels: NDArray[Any], *, background: int | None = 0, upward: boo
 
     Examples
     --------
-    A single pixel amid others has four cracks in a ring; alone in its image, its four corners are nodes:
+    A single pixel amid others has four crack edges in a ring; alone in its image, its four corners are nodes:
 
-    >>> sorted(find_cracks(np.pad([[True]], 1)).successor.tolist())
+    >>> sorted(find_crack_edges(np.pad([[True]], 1)).successor.tolist())
     [0, 1, 2, 3]
-    >>> find_cracks(np.array([[True]])).successor
+    >>> find_crack_edges(np.array([[True]])).successor
     array([-1, -1, -1, -1])
     """
     h, w = labels.shape
     flat = np.ascontiguousarray(labels).reshape(-1)
-    across, down = changes(flat, 1), changes(flat, w)
+    across, down = label_changes(flat, 1), label_changes(flat, w)
     across = across[across % w != w - 1]
     west_north = np.concatenate([across, down])
     east_south = np.concatenate([across + 1, down + w])
-    rim, rim_tail, rim_head, rim_facing = _rim(h, w)
+    rim, rim_tail, rim_head, rim_facing = _frame_edges(h, w)
 
     seen, which = np.unique(np.concatenate([flat[west_north], flat[east_south], flat[rim]]), return_inverse=True)
-    number = _numbers(seen, background)
+    number = _region_numbers(seen, background)
     first, second, edge = np.split(number[which], [len(west_north), 2 * len(west_north)])
 
-    # Between neighbours in a row the crack goes down, between neighbours in a column to the right; with y up the pixel
+    # Between neighbours in a row the crack edge goes down, between neighbours in a column to the right; with y up the pixel
     # on its left is then the second of the row, the first of the column.
     r, c = np.divmod(across, w)
     vertical = r * (w + 1) + c + 1
@@ -120,17 +120,17 @@ def find_cracks(labels: NDArray[Any], *, background: int | None = 0, upward: boo
     def pixels(index: Ints) -> Ints:
         return number[np.searchsorted(seen, flat[index])]
 
-    successor = _follow(tail, head, on_frame, (h, w), pixels, connectivity)
+    successor = _successors(tail, head, on_frame, (h, w), pixels, connectivity)
     values = np.concatenate([[0], seen[number > 0].astype(np.int64)])
-    return Cracks((h, w), tail, head, left, right, successor, on_frame, values)
+    return CrackEdges((h, w), tail, head, left, right, successor, on_frame, values)
 
 
-def changes(flat: NDArray[Any], shift: int) -> Ints:
+def label_changes(flat: NDArray[Any], shift: int) -> Ints:
     """Return all i with ``flat[i] != flat[i + shift]``, comparing eight bytes at a time.
 
     Examples
     --------
-    >>> changes(np.array([5, 5, 7, 7, 7], np.uint8), 1)
+    >>> label_changes(np.array([5, 5, 7, 7, 7], np.uint8), 1)
     array([1])
     """
     n, size = len(flat) - shift, flat.itemsize
@@ -145,14 +145,14 @@ def changes(flat: NDArray[Any], shift: int) -> Ints:
     return np.asarray(candidates[flat[candidates] != flat[candidates + shift]])
 
 
-def _numbers(seen: NDArray[Any], background: int | None) -> Ints:
+def _region_numbers(seen: NDArray[Any], background: int | None) -> Ints:
     """Give the labels that occur the numbers 1, 2, ... in their order, the background 0."""
     meshed = np.ones(len(seen), bool) if background is None else seen.astype(np.int64) != background
     return np.where(meshed, np.cumsum(meshed), 0)
 
 
-def _rim(h: int, w: int) -> tuple[Ints, Ints, Ints, NDArray[np.bool_]]:
-    """Pixels along the frame, the corners their cracks on it run between, and whether the pixel is on the left (y up)."""
+def _frame_edges(h: int, w: int) -> tuple[Ints, Ints, Ints, Bools]:
+    """Pixels along the frame, the corners their edges on it run between, and whether the pixel is on the left (y up)."""
     row, column = np.arange(h), np.arange(w)
     sides = (  #  pixels                 tail                     step   the pixel is on the left
         (column, column, 1, False),  # top
@@ -167,8 +167,8 @@ def _rim(h: int, w: int) -> tuple[Ints, Ints, Ints, NDArray[np.bool_]]:
     return pixel, tail, head, facing
 
 
-def _follow(tail: Ints, head: Ints, on_frame: NDArray[np.bool_], shape: tuple[int, int], pixels: Any, connectivity: int) -> Ints:
-    """Give each crack its successor, corner by corner."""
+def _successors(tail: Ints, head: Ints, on_frame: Bools, shape: tuple[int, int], pixels: Any, connectivity: int) -> Ints:
+    """Give each crack edge its successor, corner by corner."""
     n, (h, w) = len(tail), shape
     successor = np.full(n, NODE)
     ends = np.concatenate([tail, head])
@@ -177,7 +177,7 @@ def _follow(tail: Ints, head: Ints, on_frame: NDArray[np.bool_], shape: tuple[in
     first = np.flatnonzero(np.diff(ends, prepend=-1))
     count = np.diff(first, append=2 * n)
 
-    # Two cracks: one comes in, one goes out, since both part the same two regions.
+    # Two crack edges: one comes in, one goes out, since both part the same two regions.
     at = first[count == 2]
     goes, comes = order[at], order[at + 1] - n  # tails stand before heads in `order`
     image_corner = np.isin(ends[at], [0, w, h * (w + 1), h * (w + 1) + w])
@@ -186,7 +186,7 @@ def _follow(tail: Ints, head: Ints, on_frame: NDArray[np.bool_], shape: tuple[in
     same = on_frame[goes] == on_frame[comes]
     successor[comes[same]] = goes[same]
 
-    # Four cracks: one diagonal is joined if the two pixels on it are of the same region.
+    # Four crack edges: one diagonal is joined if the two pixels on it are of the same region.
     at = first[count == 4]
     corner = ends[at]
     r, c = np.divmod(corner, w + 1)
@@ -197,11 +197,11 @@ def _follow(tail: Ints, head: Ints, on_frame: NDArray[np.bool_], shape: tuple[in
     falling = (a == d) & ((b != lower_left) | (a == wanted))
     rising = (b == lower_left) & ~falling
     group = order[at[:, None] + np.arange(4)]
-    crack = group % n
-    # Which way a crack leaves the corner: 0 up, 1 left, 2 right, 3 down.
-    away = tail[crack] + head[crack] - 2 * corner[:, None]
+    edge = group % n
+    # Which way a crack edge leaves the corner: 0 up, 1 left, 2 right, 3 down.
+    away = tail[edge] + head[edge] - 2 * corner[:, None]
     way = np.searchsorted([-w, 0, 2], away, side="left")
-    by_way = np.take_along_axis(crack, np.argsort(way, axis=1), axis=1)
+    by_way = np.take_along_axis(edge, np.argsort(way, axis=1), axis=1)
     incoming = head[by_way] == corner[:, None]
     # Joining the diagonal a-d, the outlines pass around b (up, right) and around the lower left pixel (left, down).
     for joined, pairs in ((falling, ((0, 2), (1, 3))), (rising, ((0, 1), (2, 3)))):

@@ -9,17 +9,17 @@ import pytest
 import shapely
 import specimens
 
-from img2tri.shapes.place.placement import place
-from img2tri.shapes.trace.crack_edges import find_cracks
+from img2tri.shapes.place.placement import place_outlines
+from img2tri.shapes.trace.crack_edges import find_crack_edges
 from img2tri.types import Frame
 
 
 def corners_of(labels, background=0, **options):
     """Where the corners are (k, 2), and the outlines."""
     frame = Frame(labels.shape, spacing=options.pop("spacing", (1.0, 1.0)), upward=options.pop("upward", True))
-    cracks = find_cracks(labels, background=background, upward=frame.upward)
-    outlines, links = place(cracks, frame, **options)
-    return outlines.points[links.corner], outlines
+    crack_edges = find_crack_edges(labels, background=background, upward=frame.upward)
+    outlines, dual_edges = place_outlines(crack_edges, frame, **options)
+    return outlines.points[dual_edges.is_corner], outlines
 
 
 def same_points(found, expected, within):
@@ -76,7 +76,7 @@ def test_smaller_squares_are_rounded_at_all_four(side):
     found, outlines = corners_of(row_of_squares(side)[0])
     assert len(found) == 0
     for square in range(3):
-        points = outlines.points[outlines.indices[outlines.starts[square] : outlines.starts[square + 1]]]
+        points = outlines.points[outlines.chains.indices[outlines.chains.starts[square] : outlines.chains.starts[square + 1]]]
         off = points - [side * (1.5 + 2 * square), 1.5 * side]
         turned = off @ [[0, 1], [-1, 0]]
         assert np.hypot(*(off[:, None] - turned[None]).transpose(2, 0, 1)).min(axis=1).max() < 1e-9

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from img2tri.shapes.place.iso_crossings import crossings_by_level
-from img2tri.shapes.trace.crack_edges import find_cracks
+from img2tri.shapes.place.iso_crossings import iso_crossings
+from img2tri.shapes.trace.crack_edges import find_crack_edges
 from img2tri.shapes.trace.dual_edges import lay_out
 from img2tri.types import Frame
 
@@ -18,8 +18,8 @@ MASK = (SOFT > 0.5).astype(int)
 
 def crossings(gray):
     frame = Frame(gray.shape)
-    links = lay_out(find_cracks(MASK, upward=True), frame)
-    return crossings_by_level(gray, None, links.middle, links.axis, frame)
+    dual_edges = lay_out(find_crack_edges(MASK, upward=True), frame)
+    return iso_crossings(gray, None, dual_edges.middle, dual_edges.vector, frame)
 
 
 @pytest.mark.parametrize(("contrast", "brightness"), [(1, 10), (100, 37), (3, -1000), (-1, 0), (-50, 255), (-2, -7)])
@@ -37,9 +37,9 @@ def test_an_edge_between_two_grays_is_where_their_mean_is(share):
     gray = np.full((7, 40), 80.0)
     gray[:, :19], gray[:, 19] = 200.0, 80 + 120 * share
     frame = Frame(gray.shape)
-    links = lay_out(find_cracks(np.where(gray > 140, 1, 0), background=None, upward=True), frame)
-    shift, _ = crossings_by_level(gray, None, links.middle, links.axis, frame)
-    found = (links.middle + shift * links.axis)[links.axis != 0].real
+    dual_edges = lay_out(find_crack_edges(np.where(gray > 140, 1, 0), background=None, upward=True), frame)
+    shift, _ = iso_crossings(gray, None, dual_edges.middle, dual_edges.vector, frame)
+    found = (dual_edges.middle + shift * dual_edges.vector)[dual_edges.vector != 0].real
     assert len(found) == 7
     # Between the centres of pixels the gray value changes evenly.
     assert found == pytest.approx(np.interp(-140, -gray[3, 17:22], np.arange(17, 22) + 0.5), abs=0.011)

@@ -10,10 +10,10 @@ from scipy import ndimage
 from img2tri.raster.labels.segmentation import segment
 from img2tri.raster.reading import read
 from img2tri.recipes.conforming import trace_outlines
-from img2tri.shapes.place.iso_crossings import HARD, KNOWN, crossings_by_level
+from img2tri.shapes.place.iso_crossings import HARD, SURE, iso_crossings
 from img2tri.shapes.polygons import region_polygons
-from img2tri.shapes.trace.crack_edges import find_cracks
-from img2tri.shapes.trace.dual_edges import REACH, lay_out
+from img2tri.shapes.trace.crack_edges import find_crack_edges
+from img2tri.shapes.trace.dual_edges import BOUND, lay_out
 from img2tri.types import Frame
 
 
@@ -23,10 +23,10 @@ def outlines_of(image, **options):
 
 
 def raw_crossings(gray, level, labels, frame=None):
-    """Crossings by gray values alone, with their links."""
+    """Crossings by gray values alone, with their dual_edges."""
     frame = frame or Frame(gray.shape)
-    links = lay_out(find_cracks(labels, upward=frame.upward), frame)
-    return links, *crossings_by_level(gray, level, links.middle, links.axis, frame)
+    dual_edges = lay_out(find_crack_edges(labels, upward=frame.upward), frame)
+    return dual_edges, *iso_crossings(gray, level, dual_edges.middle, dual_edges.vector, frame)
 
 
 def off_circle(points, radius, centre, n):
@@ -57,30 +57,32 @@ def random_slopes(count=20, shape=(60, 80)):
 def test_a_crossing_is_just_where_the_values_between_two_pixels_reach_the_level():
     for gray, distance in random_slopes():
         for level in (0.0, 1.7, -0.6):
-            links, shift, slack = raw_crossings(gray, level, gray > level)
-            z = links.middle + shift * links.axis
+            dual_edges, shift, slack = raw_crossings(gray, level, gray > level)
+            z = dual_edges.middle + shift * dual_edges.vector
             off = np.abs(distance(np.stack([z.real, z.imag], axis=1)) - level / np.hypot(*np.gradient(gray))[0, 0])
-            inner = links.axis != 0
-            clipped = np.abs(shift) == REACH
+            inner = dual_edges.vector != 0
+            clipped = np.abs(shift) == BOUND
             assert off[inner & ~clipped].max() < 1e-9
-            assert off[inner & clipped].max(initial=0) <= 0.5 - REACH
-            assert np.abs(shift).max() <= REACH
+            assert off[inner & clipped].max(initial=0) <= 0.5 - BOUND
+            assert np.abs(shift).max() <= BOUND
             assert (shift[~inner] == 0).all()
-            assert (slack[inner] == KNOWN).all()
+            assert (slack[inner] == SURE).all()
 
 
 def test_the_outline_of_an_even_slope_is_a_straight_line_from_frame_to_frame():
     for gray, distance in random_slopes():
-        outlines, links = outlines_of(gray, threshold=0.0)
+        outlines, dual_edges = outlines_of(gray, threshold=0.0)
         off = np.abs(distance(outlines.points))
-        inner = links.axis != 0
+        inner = dual_edges.vector != 0
         assert off[inner].max() <= 0.02
         assert np.sqrt((off[inner] ** 2).mean()) < 0.005
         # An outline that runs along the frame would meet it more than half a pixel from where it has to end.
-        node = np.flatnonzero(np.arange(len(off)) >= len(links.crack))
-        slid = node[np.abs(outlines.points[node] - np.stack([links.middle[node].real, links.middle[node].imag], axis=1)).sum(axis=1) > 0]
+        node = np.flatnonzero(np.arange(len(off)) >= len(dual_edges.crossed))
+        slid = node[
+            np.abs(outlines.points[node] - np.stack([dual_edges.middle[node].real, dual_edges.middle[node].imag], axis=1)).sum(axis=1) > 0
+        ]
         assert len(slid) == 2
-        free = np.abs(outlines.points[slid, 0] + 1j * outlines.points[slid, 1] - links.middle[slid]) < REACH - 1e-9
+        free = np.abs(outlines.points[slid, 0] + 1j * outlines.points[slid, 1] - dual_edges.middle[slid]) < BOUND - 1e-9
         assert (off[slid[free]] < 0.02).all()
 
 
@@ -89,16 +91,16 @@ def test_in_any_frame_the_same_crossings(frame):
     gray = ndimage.gaussian_filter(np.random.default_rng(1).random((20, 30)), 2)
     level = float(np.median(gray))
     plain, shift, slack = raw_crossings(gray, level, gray > level)
-    links, other_shift, other_slack = raw_crossings(gray, level, gray > level, Frame(gray.shape, **frame))
+    dual_edges, other_shift, other_slack = raw_crossings(gray, level, gray > level, Frame(gray.shape, **frame))
 
-    def by_crack(links, values):
-        """Along each link from its darker side, whichever way the outline runs."""
-        crack = links.crack
-        sides = np.sort(np.stack([links.cracks.tail[crack], links.cracks.head[crack]]), axis=0)
+    def by_crack(dual_edges, values):
+        """Along each dual edge from its darker side, whichever way the outline runs."""
+        crack = dual_edges.crossed
+        sides = np.sort(np.stack([dual_edges.crack_edges.tail[crack], dual_edges.crack_edges.head[crack]]), axis=0)
         return values[: len(crack)][np.lexsort(sides)]
 
-    np.testing.assert_allclose(by_crack(links, other_shift), by_crack(plain, shift), atol=1e-9)
-    np.testing.assert_allclose(by_crack(links, other_slack), by_crack(plain, slack), atol=1e-9)
+    np.testing.assert_allclose(by_crack(dual_edges, other_shift), by_crack(plain, shift), atol=1e-9)
+    np.testing.assert_allclose(by_crack(dual_edges, other_slack), by_crack(plain, slack), atol=1e-9)
 
 
 @pytest.mark.parametrize("threshold", [0, 1, 5, 9, 13])
@@ -107,7 +109,7 @@ def test_of_whole_numbers_the_level_lies_above_the_threshold(threshold):
     image = ndimage.gaussian_filter(rng.random((24, 24)), 2)
     image = np.round((image - image.min()) / np.ptp(image) * 14).astype(np.uint8)
     _, shift, _ = raw_crossings(image, threshold + 0.5, image > threshold)
-    assert np.abs(shift).max() <= REACH
+    assert np.abs(shift).max() <= BOUND
     outlines, _ = outlines_of(image, threshold=threshold)
     # Many pixels are equal to the threshold: no point of an outline lies on their centres, nor two of them in one place.
     off_centre = np.abs((outlines.points - 0.5 + 0.5) % 1 - 0.5).max(axis=1)
@@ -118,8 +120,8 @@ def test_of_whole_numbers_the_level_lies_above_the_threshold(threshold):
 def test_the_level_moves_the_outline():
     gray, distance = slope((40, 40), (10.0, 3.0), (20, 20))
     for level in (-25.0, 0.0, 30.0):
-        outlines, links = outlines_of(gray, threshold=level)
-        inner = links.axis != 0
+        outlines, dual_edges = outlines_of(gray, threshold=level)
+        inner = dual_edges.vector != 0
         assert distance(outlines.points[inner]).mean() == pytest.approx(level / np.hypot(10, 3), abs=0.03)
 
 
@@ -140,8 +142,8 @@ def errors(radius, count=4, **options):
     for image, n, centre in coverage_discs(radius, count):
         outlines, _ = outlines_of(image, **options)
         smooth.append(off_circle(outlines.points, radius, centre, n))
-        links, shift, _ = raw_crossings(image, None, image > 127)
-        z = links.middle + shift * links.axis
+        dual_edges, shift, _ = raw_crossings(image, None, image > 127)
+        z = dual_edges.middle + shift * dual_edges.vector
         raw.append(off_circle(np.stack([z.real, z.imag], axis=1), radius, centre, n))
     return np.concatenate(smooth), np.concatenate(raw)
 
@@ -198,8 +200,8 @@ def test_thin_parts_survive_that_the_gray_values_hardly_show():
     y, x = np.mgrid[:320, :960] + 0.5
     fine = np.abs(y - 163) < (960 - x) / 960 * 30 + 6
     image = np.round(255 * fine.reshape(40, 8, 120, 8).mean(axis=(1, 3))).astype(np.uint8)
-    outlines, links = outlines_of(image, threshold=127)
-    inner = links.axis != 0
+    outlines, dual_edges = outlines_of(image, threshold=127)
+    inner = dual_edges.vector != 0
     x, y = outlines.points[inner].T
     wanted = ((120 - x) / 120 * 30 + 6) / 8
     off = np.abs(np.abs(40 - y - 163 / 8) - wanted)
@@ -218,7 +220,7 @@ def test_an_image_of_two_values_is_its_mask(pair, how):
     level = {"left out": {}, "given": {"threshold": sum(pair) / 2}, "otsu": {"threshold": "otsu"}}[how]
     outlines, expected = outlines_of(image, **level)[0], outlines_of(mask)[0]
     assert np.array_equal(outlines.points, expected.points)
-    assert np.array_equal(outlines.indices, expected.indices)
+    assert np.array_equal(outlines.chains.indices, expected.chains.indices)
 
 
 def test_only_soft_edges_are_taken_at_their_word():
@@ -227,16 +229,16 @@ def test_only_soft_edges_are_taken_at_their_word():
     soft = image.copy()
     soft[:, 5] = 70.0  # between column 4, dark, and column 6: the edge is 0.7 of a pixel before column 6
     for gray, expected, known in ((image, 0.0, False), (soft, 50 / 70 - 0.5, True)):
-        links, shift, slack = raw_crossings(gray, None, gray > 50)
-        inner = links.axis != 0
+        dual_edges, shift, slack = raw_crossings(gray, None, gray > 50)
+        inner = dual_edges.vector != 0
         np.testing.assert_allclose(np.abs(shift[inner]), abs(expected), atol=1e-12)
-        assert (slack[inner] == (KNOWN if known else REACH)).all()
+        assert (slack[inner] == (SURE if known else BOUND)).all()
     # Almost as great a contrast as that of the two sides counts as hard.
     for share, known in ((0.99 * HARD, True), (1.01 * HARD, False)):
         gray = image.copy()
         gray[:, 5] = 100 * (1 - share)
-        links, shift, slack = raw_crossings(gray, None, gray > 50)
-        assert (slack[links.axis != 0] == (KNOWN if known else REACH)).all()
+        dual_edges, shift, slack = raw_crossings(gray, None, gray > 50)
+        assert (slack[dual_edges.vector != 0] == (SURE if known else BOUND)).all()
 
 
 @pytest.mark.parametrize("radius", [1.2, 3.3, 8])

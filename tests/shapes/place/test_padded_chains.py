@@ -1,4 +1,4 @@
-"""Chains unrolled on a line against the rules they are continued by, and the kernels that run along them."""
+"""Chains padded and laid out on a line against the rules they are continued by, and the kernels that run along them."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from strategies import QUICK
 
-from img2tri.shapes.place.padded_chains import Unrolled, convolve, cross
+from img2tri.arrays import ChainIndex
+from img2tri.shapes.place.padded_chains import PaddedChains, convolve
 
 
 def continued(z, place, ring):
@@ -42,7 +43,7 @@ def chain_sets(draw):
 @given(chain_sets())
 def test_chains_go_on_as_they_should(case):
     z, indices, starts, rings, chosen, reach = case
-    line = Unrolled(indices, starts, rings, chosen, reach)
+    line = PaddedChains(ChainIndex(indices, starts, rings), chosen, reach)
     points, at = line.points(z), 0
     for chain in np.flatnonzero(chosen):
         mine = indices[starts[chain] : starts[chain + 1]]
@@ -58,17 +59,19 @@ def test_chains_go_on_as_they_should(case):
 
 
 def test_a_straight_line_goes_on_straight_and_a_regular_ring_round():
-    straight = Unrolled(np.arange(5), np.array([0, 5]), np.array([False]), np.array([True]), 13).points(np.arange(5) * (2 + 1j))
+    straight = PaddedChains(ChainIndex(np.arange(5), np.array([0, 5]), np.array([False])), np.array([True]), 13).points(
+        np.arange(5) * (2 + 1j)
+    )
     np.testing.assert_allclose(np.diff(straight), 2 + 1j, atol=1e-12)
     circle = np.exp(2j * np.pi * np.arange(7) / 7)
-    ring = Unrolled(np.append(np.arange(7), 0), np.array([0, 8]), np.array([True]), np.array([True]), 20).points(circle)
+    ring = PaddedChains(ChainIndex(np.append(np.arange(7), 0), np.array([0, 8]), np.array([True])), np.array([True]), 20).points(circle)
     np.testing.assert_allclose(ring[1:] / ring[:-1], circle[1], atol=1e-12)
 
 
 def test_smoothing_leaves_the_ends_of_open_chains_where_they_are():
     z = np.random.default_rng(0).random(20) + 1j * np.random.default_rng(1).random(20)
     kernel = np.hanning(13)[1:-1] / np.hanning(13).sum()
-    line = Unrolled(np.arange(20), np.array([0, 20]), np.array([False]), np.array([True]), len(kernel) // 2)
+    line = PaddedChains(ChainIndex(np.arange(20), np.array([0, 20]), np.array([False])), np.array([True]), len(kernel) // 2)
     smooth = convolve(line.points(z), kernel)[line.own]
     assert smooth[[0, -1]] == pytest.approx(z[[0, -1]], abs=1e-12)
     assert np.abs(smooth - z).max() > 0.1
@@ -82,9 +85,3 @@ def test_convolution_is_the_sum_it_stands_for(length):
     padded = np.pad(line, half)
     expected = [(padded[i : i + length] * kernel[::-1]).sum() for i in range(30)]
     np.testing.assert_allclose(convolve(line, kernel), expected, atol=1e-12)
-
-
-def test_cross_product():
-    a, b = np.array([1 + 0j, 3 + 4j, 2 + 1j]), np.array([0 + 1j, 3 + 4j, 1 - 1j])
-    assert cross(a, b).tolist() == [1, 0, -3]
-    assert cross(b, a).tolist() == [-1, 0, 3]

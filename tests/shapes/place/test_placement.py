@@ -13,10 +13,10 @@ from hypothesis import strategies as st
 from scipy import ndimage
 from strategies import QUICK
 
-from img2tri.shapes.place.placement import place, place_on_sides
+from img2tri.shapes.place.placement import place_on_pixel_sides, place_outlines
 from img2tri.shapes.polygons import region_polygons
-from img2tri.shapes.trace.crack_edges import find_cracks
-from img2tri.shapes.trace.dual_edges import REACH
+from img2tri.shapes.trace.crack_edges import find_crack_edges
+from img2tri.shapes.trace.dual_edges import BOUND
 from img2tri.types import Frame
 
 FRAMES = [{"upward": False}, {"spacing": (2.0, 1.0)}, {"spacing": (0.4, 0.5), "corner": (9.0, -3.0), "upward": False}]
@@ -28,14 +28,14 @@ def size_of_pixel(frame):
 
 def placed(labels, background=0, connectivity=4, on_sides=False, frame=None, **options):
     frame = Frame(labels.shape, **(frame or {}))
-    cracks = find_cracks(labels, background=background, upward=frame.upward, connectivity=connectivity)
-    made = place_on_sides(cracks, frame) if on_sides else place(cracks, frame, **options)
+    crack_edges = find_crack_edges(labels, background=background, upward=frame.upward, connectivity=connectivity)
+    made = place_on_pixel_sides(crack_edges, frame) if on_sides else place_outlines(crack_edges, frame, **options)
     return *made, frame
 
 
 def check(labels, background=0, connectivity=4, **options):
     """All that must hold of dense outlines, wherever their crossings lie."""
-    outlines, links, frame = placed(labels, background, connectivity, **options)
+    outlines, dual_edges, frame = placed(labels, background, connectivity, **options)
     h, w = labels.shape
     width, height = size_of_pixel(frame)
     centres = frame.plane(*(np.mgrid[:h, :w] + 0.5))
@@ -47,17 +47,17 @@ def check(labels, background=0, connectivity=4, **options):
     touching = {tuple(sorted(outlines.labels[pair].tolist())) for pair in parted[(parted > 0).all(axis=1)]}
     assert touching == oracles.pixel_neighbours(labels, background)
 
-    # Every crossing lies on its link, strictly inside; every node in its block; on the frame nodes slide along it, but not to a corner.
+    # Crossings lie on their dual edges, strictly inside; nodes in their blocks; on the frame nodes slide along it, but not to a corner.
     z = outlines.points[:, 0] + 1j * outlines.points[:, 1]
-    slide = (z - links.middle) / np.where(links.axis == 0, 1, links.axis)
-    on_link = links.axis != 0
+    slide = (z - dual_edges.middle) / np.where(dual_edges.vector == 0, 1, dual_edges.vector)
+    on_link = dual_edges.vector != 0
     assert np.abs(slide[on_link].imag).max(initial=0) < 1e-9
-    assert np.abs(slide[on_link].real).max(initial=0) <= REACH + 1e-9
-    off = z - links.middle
-    room_x, room_y = links.room.real.copy(), links.room.imag.copy()
-    node = np.arange(len(z)) >= len(links.crack)
-    on_side, on_level = np.isin(links.middle.real, (0, w * width)), np.isin(links.middle.imag, (0, h * height))
-    room_x[node & on_level & ~on_side], room_y[node & on_side & ~on_level] = REACH * width, REACH * height
+    assert np.abs(slide[on_link].real).max(initial=0) <= BOUND + 1e-9
+    off = z - dual_edges.middle
+    room_x, room_y = dual_edges.bounds.real.copy(), dual_edges.bounds.imag.copy()
+    node = np.arange(len(z)) >= len(dual_edges.crossed)
+    on_side, on_level = np.isin(dual_edges.middle.real, (0, w * width)), np.isin(dual_edges.middle.imag, (0, h * height))
+    room_x[node & on_level & ~on_side], room_y[node & on_side & ~on_level] = BOUND * width, BOUND * height
     assert (np.abs(off.real[~on_link]) <= room_x[~on_link] + 1e-9).all()
     assert (np.abs(off.imag[~on_link]) <= room_y[~on_link] + 1e-9).all()
 
@@ -80,7 +80,7 @@ def check(labels, background=0, connectivity=4, **options):
             size, changes = len(outlines.labels), np.flatnonzero(np.diff(along))
             wanted = np.bincount(along, minlength=size) * unit
             ends_of = np.bincount(along[changes], minlength=size) + np.bincount(along[changes + 1], minlength=size)
-            assert (np.abs(covered - wanted) <= ends_of * REACH * unit + 1e-9)[1:].all()
+            assert (np.abs(covered - wanted) <= ends_of * BOUND * unit + 1e-9)[1:].all()
     return outlines, polygons, frame
 
 
@@ -173,11 +173,11 @@ def test_junctions_move_within_their_block_to_where_their_chains_lead():
         centre, turn = 30 + rng.uniform(-0.5, 0.5, 2), rng.uniform(0, 2 * np.pi)
         y, x = np.mgrid[:60, :60] + 0.5
         sector = ((np.arctan2(60 - y - centre[1], x - centre[0]) + turn) % (2 * np.pi) // (2 * np.pi / 3)).astype(int) + 1
-        outlines, links, _ = placed(sector)
-        ends = np.concatenate(links.ends)
-        junction = np.flatnonzero((np.bincount(ends) == 3) & (links.room != 0))
+        outlines, dual_edges, _ = placed(sector)
+        ends = np.concatenate(dual_edges.chains.ends)
+        junction = np.flatnonzero((np.bincount(ends) == 3) & (dual_edges.bounds != 0))
         if len(junction) == 1:  # where the pixels make just one of it
-            before.append(abs(links.middle[junction[0]] - complex(*centre)))
+            before.append(abs(dual_edges.middle[junction[0]] - complex(*centre)))
             after.append(np.hypot(*(outlines.points[junction[0]] - centre)))
     assert len(after) > 30
     assert np.mean(after) < 0.8 * np.mean(before)
@@ -185,9 +185,9 @@ def test_junctions_move_within_their_block_to_where_their_chains_lead():
 
 def test_where_nothing_is_meshed_there_is_no_outline():
     for on_sides in (False, True):
-        outlines, links, _ = placed(np.zeros((4, 5), int), on_sides=on_sides)
-        assert len(outlines.points) == len(outlines.indices) == len(links.crack) == 0
-        assert outlines.starts.tolist() == [0]
+        outlines, dual_edges, _ = placed(np.zeros((4, 5), int), on_sides=on_sides)
+        assert len(outlines.points) == len(outlines.chains.indices) == len(dual_edges.crossed) == 0
+        assert outlines.chains.starts.tolist() == [0]
         assert region_polygons(outlines) == {}
 
 
@@ -202,12 +202,12 @@ def test_areas_are_those_of_the_pixels_however_many_chains_part_a_region():
 def test_the_arguments_are_not_changed():
     labels, gray = specimens.disc(20, 7), specimens.gray_disc(20, 7)
     frame = Frame(labels.shape)
-    cracks = find_cracks(labels)
-    kept = {name: getattr(cracks, name).copy() for name in ("tail", "head", "left", "right", "successor", "on_frame", "labels")}
+    crack_edges = find_crack_edges(labels)
+    kept = {name: getattr(crack_edges, name).copy() for name in ("tail", "head", "left", "right", "successor", "on_frame", "labels")}
     gray.flags.writeable = False
-    place(cracks, frame, gray=gray)
-    place_on_sides(cracks, frame)
-    assert all(np.array_equal(getattr(cracks, name), value) for name, value in kept.items())
+    place_outlines(crack_edges, frame, gray=gray)
+    place_on_pixel_sides(crack_edges, frame)
+    assert all(np.array_equal(getattr(crack_edges, name), value) for name, value in kept.items())
 
 
 # ---- exactly along the sides of pixels ----

@@ -5,19 +5,20 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from img2tri.shapes.place.padded_chains import Unrolled
-from img2tri.shapes.place.smoothing_splines import CONTINUED, WIDTH, Elastic, beyond, faded
+from img2tri.arrays import ChainIndex
+from img2tri.shapes.place.padded_chains import PaddedChains
+from img2tri.shapes.place.smoothing_splines import PADDING, WIDTH, SmoothingSpline, fade_out, farther_than
 
 
-def laid(z, *, ring, reach=CONTINUED):
+def laid(z, *, ring, reach=PADDING):
     """One chain on a line: a ring ends with its first point."""
     indices = np.append(np.arange(len(z)), 0) if ring else np.arange(len(z))
-    line = Unrolled(indices, np.array([0, len(indices)]), np.array([ring]), np.array([True]), reach)
+    line = PaddedChains(ChainIndex(indices, np.array([0, len(indices)]), np.array([ring])), np.array([True]), reach)
     return line, line.points(z)
 
 
 def smoothed(line, points, scale, free=()):
-    curves = Elastic(line, points, np.isin(np.arange(line.source.max() + 1), free))
+    curves = SmoothingSpline(line, points, np.isin(np.arange(line.source.max() + 1), free))
     return *curves.smoothed(scale), curves.steps
 
 
@@ -130,16 +131,16 @@ def test_distances_of_marks_are_those_along_the_chain(ring):
             away = np.minimum(away, length - away)
         for distance in (0.5, 6.0):
             expected = away.min(axis=1, initial=np.inf) > distance
-            assert np.array_equal(beyond(line, steps, marks, distance)[own], expected)
+            assert np.array_equal(farther_than(line, steps, marks, distance)[own], expected)
 
 
 def test_marks_say_nothing_of_other_chains():
     z = np.concatenate([circle(6.0, 40), circle(9.0, 60) + 100, np.arange(30.0) + 50j])
     indices = np.concatenate([np.arange(40), [0], np.arange(40, 100), [40], np.arange(100, 130)])
-    line = Unrolled(indices, np.array([0, 41, 102, 132]), np.array([True, True, False]), np.ones(3, bool), CONTINUED)
+    line = PaddedChains(ChainIndex(indices, np.array([0, 41, 102, 132]), np.array([True, True, False])), np.ones(3, bool), PADDING)
     _, _, steps = smoothed(line, line.points(z), 2.0)
     for chain in range(3):
-        far = beyond(line, steps, line.chain == chain, 1000.0)
+        far = farther_than(line, steps, line.chain == chain, 1000.0)
         assert np.array_equal(far, line.chain != chain)
 
 
@@ -148,8 +149,8 @@ def test_values_fade_and_do_not_add_up():
     values = np.zeros(len(line.own))
     own = np.flatnonzero(line.own)
     values[own[[10, 40, 41]]] = 1, -2, -2
-    fading = faded(line, values, 3.0)[own]
+    fading = fade_out(line, values, 3.0)[own]
     assert fading[[10, 40, 41]] == pytest.approx([1, -2, -2], abs=0.05)
     assert fading[13] == pytest.approx(np.exp(-0.5), abs=0.01)
     assert np.abs(fading[[0, 25, 59]]).max() < 0.02
-    assert not faded(line, np.zeros(len(values)), 3.0).any()
+    assert not fade_out(line, np.zeros(len(values)), 3.0).any()

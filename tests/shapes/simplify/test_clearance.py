@@ -1,8 +1,7 @@
-"""Crowded and sharp pieces against looking at every pair."""
+"""Crowded and sharp chords against looking at every pair."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -10,11 +9,11 @@ import pytest
 import shapely
 import specimens
 
-from img2tri.shapes.place.placement import place
+from img2tri.shapes.place.placement import place_outlines
 from img2tri.shapes.simplify import clearance
-from img2tri.shapes.simplify.clearance import GAP, _around, crowded_pieces, sharp_pieces, to_segment
-from img2tri.shapes.simplify.simplification import draft
-from img2tri.shapes.trace.crack_edges import find_cracks
+from img2tri.shapes.simplify.clearance import GAP, _around, crowded_chords, sharp_chords, to_segment
+from img2tri.shapes.simplify.simplification import space_evenly
+from img2tri.shapes.trace.crack_edges import find_crack_edges
 from img2tri.types import Frame
 
 LEAST_ANGLE = 50
@@ -30,17 +29,17 @@ SHAPES = {
 
 
 def drafted(name, spacing, seed=0):
-    """A draft as it is before anything is split, its bulges made up."""
+    """A simplification before anything is split, and deviations made up."""
     labels = SHAPES[name]
-    d = draft(*place(find_cracks(labels), Frame(labels.shape)), spacing=spacing)
-    bulge = np.random.default_rng(seed).uniform(0, 0.6, len(d.bulge))
-    return replace(d, bulge=bulge)
+    d = space_evenly(*place_outlines(find_crack_edges(labels), Frame(labels.shape)), spacing=spacing)
+    deviation = np.random.default_rng(seed).uniform(0, 0.6, len(d.chords[0]))
+    return d, deviation
 
 
-def pairs_by_hand(d):
-    """Pairs of pieces that are crowded, and that are sharp."""
-    first, last = d.pieces
-    at, z, chain = d.outlines.indices, d.dense[d.outlines.indices], d.links.chain
+def pairs_by_hand(d, deviation):
+    """Pairs of chords that are crowded, and that are sharp."""
+    first, last = d.chords
+    at, z, chain = d.outlines.chains.indices, d.dense, d.dual_edges.chains.chain
     place = d.places
     lines = shapely.linestrings([[(p.real, p.imag) for p in place[[a, b]]] for a, b in zip(first, last, strict=True)])
     step = np.abs(np.diff(z))
@@ -53,10 +52,10 @@ def pairs_by_hand(d):
             way = np.inf
             if chain[first[i]] == chain[first[j]]:
                 way = step[last[i] : first[j]].sum()
-                if d.links.rings[chain[first[i]]]:
-                    begin, end = d.outlines.starts[chain[first[i]]], d.outlines.starts[chain[first[i]] + 1] - 1
+                if d.dual_edges.chains.rings[chain[first[i]]]:
+                    begin, end = d.outlines.chains.starts[chain[first[i]]], d.outlines.chains.starts[chain[first[i]] + 1] - 1
                     way = min(way, step[begin : first[i]].sum() + step[last[j] : end].sum())
-            if distance < GAP + d.bulge[first[i]] + d.bulge[first[j]] and way > max(4 * distance, 1):
+            if distance < GAP + deviation[i] + deviation[j] and way > max(4 * distance, 1):
                 crowded.append((i, j))
         for point in shared:
             headings = []
@@ -78,23 +77,23 @@ def marked(pairs, fresh):
 
 @pytest.mark.parametrize("spacing", [1.5, 4.0, 9.0])
 @pytest.mark.parametrize("name", SHAPES)
-def test_pieces_are_those_found_by_looking_at_every_pair(name, spacing):
-    d = drafted(name, spacing)
-    first, last = d.pieces
-    crowded, sharp = pairs_by_hand(d)
+def test_chords_are_those_found_by_looking_at_every_pair(name, spacing):
+    d, deviation = drafted(name, spacing)
+    first, last = d.chords
+    crowded, sharp = pairs_by_hand(d, deviation)
     rng = np.random.default_rng(1)
     for share in (1.0, 0.5, 0.1, 0.02):
         fresh = rng.random(len(first)) < share
         fresh[rng.integers(len(first))] = True
-        assert np.array_equal(crowded_pieces(d, first, last, fresh), marked(crowded, fresh))
-        # Others that meet in the same point as a fresh piece may be told as well.
-        found = sharp_pieces(d, first, last, fresh)
+        assert np.array_equal(crowded_chords(d, first, last, deviation, fresh), marked(crowded, fresh))
+        # Others that meet in the same point as a fresh chord may be told as well.
+        found = sharp_chords(d, first, last, fresh)
         assert (found >= marked(sharp, fresh)).all()
         assert (found <= marked(sharp, np.ones(len(first), bool))).all()
 
 
 def test_there_is_something_to_find():
-    found = [pairs_by_hand(drafted(name, 4.0)) for name in SHAPES]
+    found = [pairs_by_hand(*drafted(name, 4.0)) for name in SHAPES]
     assert sum(bool(crowded) for crowded, _ in found) >= 4
     assert sum(bool(sharp) for _, sharp in found) >= 3
 
@@ -108,10 +107,10 @@ def test_distance_to_segments():
 
 
 def test_where_nothing_is_fresh_nothing_is_sharp():
-    d = drafted("noise", 4.0)
-    first, last = d.pieces
-    assert sharp_pieces(d, first, last, np.ones(len(first), bool)).any()
-    assert not sharp_pieces(d, first, last, np.zeros(len(first), bool)).any()
+    d, _ = drafted("noise", 4.0)
+    first, last = d.chords
+    assert sharp_chords(d, first, last, np.ones(len(first), bool)).any()
+    assert not sharp_chords(d, first, last, np.zeros(len(first), bool)).any()
 
 
 @pytest.mark.parametrize("reach", [0.3, 1.0, 4.0, 30.0])

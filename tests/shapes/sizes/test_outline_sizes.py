@@ -11,8 +11,8 @@ import specimens
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
-from img2tri.shapes.sizes.outline_sizes import LOOSE, arcs, by_curvature, by_pieces, by_thickness, limit_growth
-from img2tri.shapes.trace.crack_edges import find_cracks
+from img2tri.shapes.sizes.outline_sizes import ROOM_TO_EVEN, arc_lengths, by_chords, by_curvature, by_thickness, limit_growth
+from img2tri.shapes.trace.crack_edges import find_crack_edges
 from img2tri.shapes.trace.dual_edges import lay_out
 from img2tri.types import Frame
 
@@ -20,53 +20,57 @@ LONGEST = 12.0
 
 
 def laid_out(labels, background=0):
-    """The chains of a label map, and the places of their entries: the middles of cracks."""
+    """The chains of a label map, and the places of their entries: the middles of crack edges."""
     frame = Frame(labels.shape)
-    links = lay_out(find_cracks(labels, background=background, upward=True, connectivity=4), frame)
-    return links, links.middle[links.indices]
+    dual_edges = lay_out(find_crack_edges(labels, background=background, upward=True, connectivity=4), frame)
+    return dual_edges, dual_edges.middle[dual_edges.chains.indices]
 
 
-def least_of_all(size, z, links, gradation):
+def least_of_all(size, z, dual_edges, gradation):
     """The least, over all points of the network, of the length there and what is grown on the shortest way from there."""
-    n = len(links.middle)
+    n = len(dual_edges.middle)
     own = np.full(n, np.inf)
-    np.minimum.at(own, links.indices, size)
-    inner = np.flatnonzero(links.chain[:-1] == links.chain[1:])
-    one, other, way = links.indices[inner], links.indices[inner + 1], gradation * abs(z[inner + 1] - z[inner])
+    np.minimum.at(own, dual_edges.chains.indices, size)
+    inner = np.flatnonzero(dual_edges.chains.chain[:-1] == dual_edges.chains.chain[1:])
+    one, other, way = dual_edges.chains.indices[inner], dual_edges.chains.indices[inner + 1], gradation * abs(z[inner + 1] - z[inner])
     rows, columns = np.concatenate([np.full(n, n), one, other]), np.concatenate([np.arange(n), other, one])
     network = coo_array((np.concatenate([own, way, way]), (rows, columns)), shape=(n + 1, n + 1)).tocsr()
-    return dijkstra(network, indices=n)[links.indices]
+    return dijkstra(network, indices=n)[dual_edges.chains.indices]
 
 
 @pytest.mark.parametrize("gradation", [0.05, 0.3, 1.0])
 @pytest.mark.parametrize("labels", [specimens.disc(), specimens.disc(40, 18) - specimens.disc(40, 6)])
 def test_along_rings_lengths_grow_no_faster_than_the_gradation(labels, gradation):
-    links, z = laid_out(labels)
+    dual_edges, z = laid_out(labels)
     size = np.random.default_rng(0).uniform(1, 20, len(z))
     given = size.copy()
-    np.testing.assert_allclose(limit_growth(size, z, links, gradation), least_of_all(size, z, links, gradation), rtol=1e-12)
+    np.testing.assert_allclose(
+        limit_growth(size, z, dual_edges.chains, gradation), least_of_all(size, z, dual_edges, gradation), rtol=1e-12
+    )
     assert (size == given).all()
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_growth_goes_on_where_chains_meet(seed):
-    links, z = laid_out(specimens.polycrystal(64, 12, seed), None)
+    dual_edges, z = laid_out(specimens.polycrystal(64, 12, seed), None)
     size = np.random.default_rng(seed).uniform(3, 30, len(z))
     size[np.random.default_rng(seed).integers(len(z), size=3)] = 1
     # So steep that no length is felt beyond two junctions.
-    np.testing.assert_allclose(limit_growth(size, z, links, 0.5), least_of_all(size, z, links, 0.5), rtol=1e-12)
+    np.testing.assert_allclose(limit_growth(size, z, dual_edges.chains, 0.5), least_of_all(size, z, dual_edges, 0.5), rtol=1e-12)
 
 
 def test_arcs_are_lengths_from_the_start_of_each_chain():
-    links, z = laid_out(specimens.polycrystal(30, 6), None)
-    expected = [np.concatenate([[0], np.cumsum(abs(np.diff(z[a:b])))]) for a, b in pairwise(links.starts)]
-    np.testing.assert_allclose(arcs(z, links), np.concatenate(expected), atol=1e-9)
+    dual_edges, z = laid_out(specimens.polycrystal(30, 6), None)
+    expected = [np.concatenate([[0], np.cumsum(abs(np.diff(z[a:b])))]) for a, b in pairwise(dual_edges.chains.starts)]
+    np.testing.assert_allclose(arc_lengths(z, dual_edges.chains), np.concatenate(expected), atol=1e-9)
 
 
-def inner(z, links, low, high):
+def inner(z, dual_edges, low, high):
     """Entries that are no ends of chains, with x between two values."""
     at = np.arange(1, len(z) - 1)
-    at = at[(links.chain[at - 1] == links.chain[at]) & (links.chain[at + 1] == links.chain[at])]
+    at = at[
+        (dual_edges.chains.chain[at - 1] == dual_edges.chains.chain[at]) & (dual_edges.chains.chain[at + 1] == dual_edges.chains.chain[at])
+    ]
     return at[(z.real[at] > low) & (z.real[at] < high)]
 
 
@@ -75,9 +79,9 @@ def inner(z, links, low, high):
 def test_across_a_bar_there_is_room_for_the_elements_asked_for(thick, elements):
     labels = np.zeros((40, 100), int)
     labels[10 : 10 + thick, 5:95] = 1
-    links, z = laid_out(labels)
-    size = by_thickness(z, links, LONGEST, elements)
-    along = inner(z, links, 30, 70)
+    dual_edges, z = laid_out(labels)
+    size = by_thickness(z, dual_edges, LONGEST, elements)
+    along = inner(z, dual_edges, 30, 70)
     measured = along[along % 3 == 0]
     np.testing.assert_allclose(size[measured], min(LONGEST, thick / elements), rtol=1e-9)
     # Between the points it is measured at, nothing is asked for.
@@ -89,9 +93,9 @@ def test_what_is_no_region_may_be_thin():
     labels = np.zeros((60, 100), int)
     labels[5:25, 5:95] = labels[29:55, 5:95] = 1
     for background, thin in ((0, np.inf), (None, 4)):
-        links, z = laid_out(labels, background)
-        size = by_thickness(z, links, LONGEST, 4)
-        on_slit = inner(z, links, 30, 70)
+        dual_edges, z = laid_out(labels, background)
+        size = by_thickness(z, dual_edges, LONGEST, 4)
+        on_slit = inner(z, dual_edges, 30, 70)
         on_slit = on_slit[(on_slit % 3 == 0) & np.isin(z.imag[on_slit], (31, 35))]
         assert len(on_slit) > 10
         beside = np.minimum(thin, np.where(z.imag[on_slit] == 35, 20, 26)) / 4
@@ -101,9 +105,9 @@ def test_what_is_no_region_may_be_thin():
 def test_of_neighbours_the_thinner_one_counts():
     labels = np.ones((60, 100), int)
     labels[20:26], labels[26:] = 2, 3
-    links, z = laid_out(labels)
-    size = by_thickness(z, links, LONGEST, 2)
-    at = inner(z, links, 30, 70)
+    dual_edges, z = laid_out(labels)
+    size = by_thickness(z, dual_edges, LONGEST, 2)
+    at = inner(z, dual_edges, 30, 70)
     at = at[(at % 3 == 0) & np.isin(z.imag[at], (34, 40))]
     assert len(at) > 20
     np.testing.assert_allclose(size[at], 3, rtol=1e-9)
@@ -111,42 +115,42 @@ def test_of_neighbours_the_thinner_one_counts():
 
 @pytest.mark.parametrize("radius", [8.0, 14.0])
 def test_a_disc_is_as_thick_as_its_diameter_and_turns_once(radius):
-    links, z = laid_out(specimens.disc(40, radius))
+    dual_edges, z = laid_out(specimens.disc(40, radius))
     ring = radius * np.exp(-2j * np.pi * np.arange(len(z)) / (len(z) - 1))  # the disc on its right
-    assert (links.sides[0].tolist(), links.sides[1].tolist()) == ([0], [1])
-    thick = by_thickness(ring, links, 100.0, 2)
+    assert (dual_edges.regions[0].tolist(), dual_edges.regions[1].tolist()) == ([0], [1])
+    thick = by_thickness(ring, dual_edges, 100.0, 2)
     measured = np.arange(3, len(z) - 1, 3)
     np.testing.assert_allclose(thick[measured], radius, rtol=1e-3)
-    size = by_curvature(ring, links, 100.0, 24)
+    size = by_curvature(ring, dual_edges.chains, 100.0, 24)
     np.testing.assert_allclose(size[4:-4], 2 * np.pi * radius / 24, rtol=0.03)
-    assert (by_curvature(ring, links, 1.0, 24) == 1).all()
-    np.testing.assert_allclose(by_curvature(ring, links, 100.0, 48)[4:-4], size[4:-4] / 2)
+    assert (by_curvature(ring, dual_edges.chains, 1.0, 24) == 1).all()
+    np.testing.assert_allclose(by_curvature(ring, dual_edges.chains, 100.0, 48)[4:-4], size[4:-4] / 2)
 
 
 def test_what_is_straight_asks_for_nothing():
     labels = np.ones((30, 40), int)
     labels[:, 20:] = 2
-    links, z = laid_out(labels)
+    dual_edges, z = laid_out(labels)
     chain = np.flatnonzero(z.real == 20)
-    assert (by_curvature(z, links, LONGEST, 360)[chain[4:-4]] == LONGEST).all()
+    assert (by_curvature(z, dual_edges.chains, LONGEST, 360)[chain[4:-4]] == LONGEST).all()
 
 
-def test_a_corner_asks_for_short_pieces_beside_it():
+def test_a_corner_asks_for_short_chords_beside_it():
     labels = np.ones((30, 40), int)
     labels[:10, :20] = 2
-    links, z = laid_out(labels)
-    size = by_curvature(z, links, LONGEST, 20)
+    dual_edges, z = laid_out(labels)
+    size = by_curvature(z, dual_edges.chains, LONGEST, 20)
     near = abs(z - (20 + 20j)) < 1.1
     assert (size[near] < 5).all()
-    far = (abs(z - (20 + 20j)) > 6) & (links.chain == links.chain[np.flatnonzero(near)[0]])
+    far = (abs(z - (20 + 20j)) > 6) & (dual_edges.chains.chain == dual_edges.chains.chain[np.flatnonzero(near)[0]])
     assert (size[far] == LONGEST).all()
 
 
-def test_pieces_that_came_out_short_stay_so():
+def test_chords_that_came_out_short_stay_so():
     places = np.array([0, 1, 2, 3, 10, 11, 12 + 5j, 20])
-    made = SimpleNamespace(places=places, pieces=(np.array([0, 3, 5]), np.array([3, 5, 6])))
+    made = SimpleNamespace(places=places, chords=(np.array([0, 3, 5]), np.array([3, 5, 6])))
     wanted = np.array([9.0, 9, 2, 9, 9, 9, 9, 9])
-    short = LOOSE * abs(np.array([3, 8, 1 + 5j]))
+    short = ROOM_TO_EVEN * abs(np.array([3, 8, 1 + 5j]))
     expected = [short[0], short[0], 2, short[0], 9, short[2], short[2], 9]
-    np.testing.assert_allclose(by_pieces(made, wanted), expected)
+    np.testing.assert_allclose(by_chords(made, wanted), expected)
     assert wanted[0] == 9

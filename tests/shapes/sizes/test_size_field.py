@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial.distance import cdist
 
 from img2tri.errors import ParameterError
-from img2tri.shapes.sizes.size_field import CELLS, FIRST, SCALE, length_field
+from img2tri.shapes.sizes.size_field import FIRST_CELLS, LENGTH_STEP, MOST_FIELD_CELLS, size_field
 from img2tri.types import Frame
 
 LABELS = np.zeros((30, 40), int)
@@ -34,11 +34,11 @@ def in_plane(places, frame):
 @pytest.mark.parametrize("frame", [FRAME, Frame(LABELS.shape, (0.25, 0.25), (7, -3)), Frame(LABELS.shape, upward=False)])
 def test_no_length_grows_faster_than_the_gradation(frame, gradation):
     wanted = np.random.default_rng(0).uniform(1, 20, LABELS.shape) * frame.pixel
-    longest, field = length_field(wanted, frame, LABELS, gradation=gradation)
+    longest, field = size_field(wanted, frame, LABELS, gradation=gradation)
     found, truth = field(in_plane(centres(frame), frame)) * frame.pixel, grown(wanted, frame, gradation)
     assert (found <= wanted.ravel() * (1 + 1e-12)).all()
-    assert (found >= truth / SCALE**0.5 - 1e-9).all()
-    assert (found <= truth * SCALE + 1e-9).all()
+    assert (found >= truth / LENGTH_STEP**0.5 - 1e-9).all()
+    assert (found <= truth * LENGTH_STEP + 1e-9).all()
     assert longest == field.grid.max()
 
 
@@ -51,7 +51,7 @@ def test_a_function_an_array_and_labels_say_the_same():
         return array[rows.astype(int), columns.astype(int)]
 
     (a, one), (b, two), (c, three) = (
-        length_field(wanted, frame, LABELS, gradation=0.3) for wanted in ({0: 6, 1: "2px", 2: "12%"}, array, function)
+        size_field(wanted, frame, LABELS, gradation=0.3) for wanted in ({0: 6, 1: "2px", 2: "12%"}, array, function)
     )
     diagonal = float(np.hypot(15, 20))
     assert 0.12 * diagonal == 3
@@ -65,14 +65,14 @@ def test_a_function_an_array_and_labels_say_the_same():
 
 def test_labels_left_out_take_the_greatest():
     for wanted in ({1: 2, 2: 5}, {1: 2, 2: 5, 0: 5}):
-        longest, field = length_field(wanted, FRAME, LABELS, gradation=100)
+        longest, field = size_field(wanted, FRAME, LABELS, gradation=100)
         assert longest == 5
         assert sorted(set(field.grid.ravel())) == [2, 5]
         assert (field.grid == 2).sum() == (LABELS == 1).sum()
 
 
 def test_between_centres_lengths_are_interpolated_and_beyond_the_image_they_are_those_of_its_rim():
-    _, field = length_field(np.tile(np.arange(1.0, 41), (30, 1)), FRAME, LABELS, gradation=5)
+    _, field = size_field(np.tile(np.arange(1.0, 41), (30, 1)), FRAME, LABELS, gradation=5)
     assert field(np.array([[0.5, 3.0], [1.5, 3.0], [1.25, 3.0]])) == pytest.approx([1, 2, 1.75])
     assert field(np.array([[-100, 3.0], [1e6, 3.0]])) == pytest.approx([1, 40])
 
@@ -80,13 +80,13 @@ def test_between_centres_lengths_are_interpolated_and_beyond_the_image_they_are_
 def test_one_length_needs_no_field():
     frame = Frame((30, 40), (0.5, 0.5))
     for wanted, length in ((8, 16), (np.float32(8), 16), ("8px", 8), ("4%", 2)):
-        assert length_field(wanted, frame, LABELS, gradation=0.3) == (pytest.approx(length), None)
+        assert size_field(wanted, frame, LABELS, gradation=0.3) == (pytest.approx(length), None)
 
 
 def test_a_large_image_gets_coarser_cells():
-    _, field = length_field(lambda places: np.where(places[:, 0] < 100, 2, 5 + places[:, 0]), Frame((3000, 2000)), LABELS, gradation=10)
-    assert field.cell == pytest.approx(np.sqrt(6e6 / CELLS))
-    assert 0.99 * CELLS < field.grid.size < 1.01 * CELLS
+    _, field = size_field(lambda places: np.where(places[:, 0] < 100, 2, 5 + places[:, 0]), Frame((3000, 2000)), LABELS, gradation=10)
+    assert field.cell == pytest.approx(np.sqrt(6e6 / MOST_FIELD_CELLS))
+    assert 0.99 * MOST_FIELD_CELLS < field.grid.size < 1.01 * MOST_FIELD_CELLS
     assert field(np.array([[1000.0, 1500.0]])) == pytest.approx(1005, rel=1e-6)
 
 
@@ -98,7 +98,7 @@ def test_no_pixel_of_a_large_image_is_lost(spacing, upward):
     wanted = np.full(frame.shape, 50.0)
     row, column = 1234, 567
     wanted[row, column] = 5
-    _, field = length_field(wanted, frame, wanted, gradation=0.5)
+    _, field = size_field(wanted, frame, wanted, gradation=0.5)
     at = in_plane(frame.xy(row + 0.5, column + 0.5)[None], frame)
     assert field.cell > 1.5
     assert field(at) * frame.pixel <= 5 + 0.5 * field.cell * frame.pixel
@@ -117,10 +117,10 @@ def test_a_function_is_asked_in_cells_as_small_as_its_shortest_length(shortest):
         asked.append(len(places))
         return shortest + 0.3 * np.hypot(*(places - [312.3, 640.7]).T)
 
-    _, field = length_field(cone, frame, LABELS, gradation=0.3)
-    coarsest = 1000 / np.sqrt(FIRST)
+    _, field = size_field(cone, frame, LABELS, gradation=0.3)
+    coarsest = 1000 / np.sqrt(FIRST_CELLS)
     assert max(1, min(shortest, coarsest)) <= field.cell <= max(1, min(1.7 * shortest, coarsest))
-    assert sum(asked) <= 2 * field.grid.size + FIRST
+    assert sum(asked) <= 2 * field.grid.size + FIRST_CELLS
     away = np.random.default_rng(0).uniform(0, 1000, (1000, 2))
     truth = shortest + 0.3 * np.hypot(*(away - [312.3, 640.7]).T)
     assert field(away) == pytest.approx(truth, abs=0.3 * field.cell)
@@ -146,13 +146,13 @@ def test_a_function_is_asked_in_cells_as_small_as_its_shortest_length(shortest):
 )
 def test_what_is_no_length_is_refused(wanted, words):
     with pytest.raises(ParameterError) as refused:
-        length_field(wanted, FRAME, LABELS, gradation=0.3, name="size")
+        size_field(wanted, FRAME, LABELS, gradation=0.3, name="size")
     assert str(refused.value) == f"size: {words}"
 
 
 def test_a_wrong_length_of_a_label_names_it():
     with pytest.raises(ParameterError, match=r"^edge_length\[1\]: expected a number above 0, found -1"):
-        length_field({1: -1}, FRAME, LABELS, gradation=0.3)
+        size_field({1: -1}, FRAME, LABELS, gradation=0.3)
 
 
 @pytest.mark.parametrize("steepness", [0.1, 0.3, 0.31, 2.0])
@@ -160,7 +160,7 @@ def test_what_grows_no_faster_is_left_as_it_is(steepness):
     """Within the steps in which reach is looked at; a cone as steep as the limit is not touched, a steeper one is cut down to it."""
     y, x = np.mgrid[:60, :80] + 0.5
     asked = 2 + steepness * np.hypot(x - 31.3, y - 22.8)
-    _, field = length_field(asked, Frame((60, 80), upward=False), asked, gradation=0.3)
+    _, field = size_field(asked, Frame((60, 80), upward=False), asked, gradation=0.3)
     assert (field.grid <= asked + 1e-12).all()
     assert (field.grid == asked).all() == (steepness <= 0.3)
     lowest = np.unravel_index(asked.argmin(), asked.shape)
@@ -173,6 +173,6 @@ def test_growth_is_limited_along_diagonals_too(sign):
     y, x = np.mgrid[:60, :80] + 0.5
     for slope in (0.2, 0.25):  # 0.28 and 0.35 along the diagonal
         asked = 30 + slope * (x + sign * y)
-        _, field = length_field(asked, Frame((60, 80), upward=False), asked, gradation=0.3)
+        _, field = size_field(asked, Frame((60, 80), upward=False), asked, gradation=0.3)
         assert (field.grid == asked).all() == (slope == 0.2)
         assert (field.grid <= asked + 1e-12).all()

@@ -9,13 +9,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from strategies import QUICK
 
-from img2tri.shapes.trace.chains import trace, walk
-from img2tri.shapes.trace.crack_edges import NODE, find_cracks
+from img2tri.shapes.trace.chains import follow, trace_chains
+from img2tri.shapes.trace.crack_edges import NODE, find_crack_edges
 
 
 @st.composite
 def successors(draw):
-    """Rings of all lengths, some of them cut."""
+    """RegionRings of all lengths, some of them cut."""
     n = draw(st.integers(0, 40))
     after = np.array(draw(st.permutations(range(n))), np.int64)
     cut = np.array(draw(st.lists(st.booleans(), min_size=n, max_size=n)), bool)
@@ -39,22 +39,22 @@ def chains_by_hand(successor):
 
 
 def as_set(chains):
-    parts = np.split(chains.order, chains.starts[1:-1]) if len(chains.rings) else []
-    return {(tuple(part.tolist()), bool(ring)) for part, ring in zip(parts, chains.rings, strict=True)}
+    parts = np.split(chains.order, chains.starts[1:-1]) if len(chains.closed) else []
+    return {(tuple(part.tolist()), bool(ring)) for part, ring in zip(parts, chains.closed, strict=True)}
 
 
 def check(successor):
     kept = successor.copy()
-    chains = walk(successor)
+    chains = follow(successor)
     assert np.array_equal(successor, kept)
     assert as_set(chains) == chains_by_hand(successor)
-    assert len(as_set(chains)) == len(chains.rings)
+    assert len(as_set(chains)) == len(chains.closed)
     n = len(successor)
     assert np.array_equal(np.sort(chains.order), np.arange(n))
     assert chains.order.dtype == chains.starts.dtype == np.int64
     assert (chains.starts[0], chains.starts[-1]) == (0, n)
     assert (np.diff(chains.starts) > 0).all()
-    assert np.array_equal(chains.chain, np.searchsorted(chains.starts[1:], np.arange(n), side="right"))
+    assert np.array_equal(chains.sequence, np.searchsorted(chains.starts[1:], np.arange(n), side="right"))
 
 
 @QUICK
@@ -75,8 +75,8 @@ def test_one_ring_one_chain_and_single_items(n):
 
 
 def test_nothing_has_no_chains():
-    chains = walk(np.zeros(0, np.int64))
-    assert len(chains.order) == len(chains.rings) == len(chains.chain) == 0
+    chains = follow(np.zeros(0, np.int64))
+    assert len(chains.order) == len(chains.closed) == len(chains.sequence) == 0
     assert chains.starts.tolist() == [0]
 
 
@@ -85,24 +85,24 @@ def test_long_chains_and_many_short_ones_are_walked_all_the_same():
     order = np.random.default_rng(0).permutation(n)
     after = np.empty(n, np.int64)
     after[order] = np.roll(order, -1)
-    chains = walk(after)
+    chains = follow(after)
     assert chains.order[0] == 0
     assert np.array_equal(after[chains.order], np.roll(chains.order, -1))
-    many = walk(np.arange(n).reshape(-1, 4)[:, [1, 2, 3, 0]].ravel())
-    assert len(many.rings) == n // 4
-    assert many.rings.all()
+    many = follow(np.arange(n).reshape(-1, 4)[:, [1, 2, 3, 0]].ravel())
+    assert len(many.closed) == n // 4
+    assert many.closed.all()
     assert np.array_equal(many.order, np.arange(n))
 
 
 @pytest.mark.parametrize("name", specimens.ALL)
-def test_cracks_are_traced_head_to_tail(name):
-    cracks = find_cracks(specimens.ALL[name], background=None)
-    chains = trace(cracks)
+def test_crack_edges_are_traced_head_to_tail(name):
+    crack_edges = find_crack_edges(specimens.ALL[name], background=None)
+    chains = trace_chains(crack_edges)
     inside = np.ones(len(chains.order), bool)
     inside[chains.starts[1:] - 1] = False
     at = np.flatnonzero(inside)
-    assert np.array_equal(cracks.head[chains.order[at]], cracks.tail[chains.order[at + 1]])
+    assert np.array_equal(crack_edges.head[chains.order[at]], crack_edges.tail[chains.order[at + 1]])
     first, last = chains.order[chains.starts[:-1]], chains.order[chains.starts[1:] - 1]
-    assert np.array_equal(cracks.successor[last], np.where(chains.rings, first, NODE))
-    for beside in (cracks.left, cracks.right, cracks.on_frame):
-        assert np.array_equal(beside[chains.order], beside[first][chains.chain])
+    assert np.array_equal(crack_edges.successor[last], np.where(chains.closed, first, NODE))
+    for beside in (crack_edges.left, crack_edges.right, crack_edges.on_frame):
+        assert np.array_equal(beside[chains.order], beside[first][chains.sequence])
