@@ -210,6 +210,7 @@ class TriangleMesh:
         version: str | None = None,
         deck: bool | None = None,
         plane: str | None = None,
+        image: Any = None,
     ) -> None:
         """Write the mesh in the format the suffix names. An older file is replaced in one step, or left as it is.
 
@@ -217,20 +218,27 @@ class TriangleMesh:
         ----------
         path
             For printing and looking at: .stl, .ply, .obj, .off, .3mf, .glb, .vtp, .vtu. For solvers, with named sets: .msh, .inp,
-            .bdf, .xdmf, .vtu, .vtkhdf. The outlines of the image: .svg, .dxf, .geojson.
+            .bdf, .xdmf, .vtu, .vtkhdf. The outlines of the image: .svg, .dxf, .geojson. A page to look at: .html.
         height
             World units: write a solid from z = 0 to there, closed surfaces for printing, wedges for solvers.
         layers, order
             For solvers: layers of wedges; 2 for quadratic elements.
         version, deck, plane
             Of .msh, "4.1" or "2.2"; of .inp, whether an analysis that runs is written, in plane "stress" or "strain".
+        image
+            Of .html: what was meshed, a path or an array, to be seen below the mesh.
         """
+        from img2tri.mesh_pictures import save_page
         from img2tri.views.formats import svg_dxf_geojson as vectors
         from img2tri.views.formats.save_load import save
         from img2tri.views.formats.solvers.save_for_solvers import EXPORTS, export
 
         suffix = Path(path).suffix.lower()
-        if suffix in vectors.DRAWING_FORMATS:
+        if image is not None and suffix != ".html":
+            raise ParameterError(f"image: expected to be left out for {suffix}, which holds no image; it is for .html")
+        if suffix == ".html" and height is None:
+            save_page(self, path, image)
+        elif suffix in vectors.DRAWING_FORMATS:
             if height is not None:
                 raise ParameterError(f"height: expected None for {suffix}, which is a drawing, found {height!r}")
             about = {"bounds": self._bounds(), "upward": self.frame.upward, "field_data": self._data()["field_data"]}
@@ -254,34 +262,20 @@ class TriangleMesh:
         colour_by
             "quality", "region", or None for red edges as in the paper's figures.
         """
-        from img2tri.raster.reading import read
-        from img2tri.views.figures.plot import draw
+        from img2tri.mesh_pictures import figure
 
-        values = None if image is None else read(image).values
-        kept = self.origin.settings.get("crop") if self.origin and values is not None else None
-        if kept and values is not None and values.shape[:2] == tuple(kept["of"]):
-            values = values[slice(*kept["rows"]), slice(*kept["columns"])]
-        return draw(
-            self.vertices, self.triangles, regions=self.regions, values=self._data()["cell_data"]["q"], frame=self.frame,
-            image=values, colour_by=colour_by, path=path,
-        )  # fmt: skip
+        return figure(self, image, path, colour_by=colour_by)
 
     def _cells(self, height: float | None, layers: int, order: int) -> Cells:
         """Return the elements solvers compute on, with their named sets."""
-        from img2tri.views.objects.solver_cells import flat_cells, solid_cells
-        from img2tri.views.objects.wedges import wedges
+        from img2tri.views.objects.solver_cells import elements
 
         if order not in (1, 2):
             raise ParameterError(f"order: expected 1 or 2, found {order!r}")
-        nodes, elements, n, middles = self.vertices, self.triangles, len(self.vertices), None
-        if order == 2:
-            curved = self.second_order()
-            nodes, elements, middles = curved.nodes, curved.triangles, curved.nodes[n:]
-        flat = flat_cells(nodes, elements, self.regions, names=self.names, bounds=self._bounds(), **self._data())
-        if height is None:
-            return flat
-        points, cells, _ = wedges(nodes[:n], self.triangles, height=height, layers=layers, order=order, z=self.frame.z, middles=middles)
-        return solid_cells(flat, points, cells)
+        curved = self.second_order() if order == 2 else None
+        nodes, triangles = (curved.nodes, curved.triangles) if curved else (self.vertices, self.triangles)
+        about = {"names": self.names, "bounds": self._bounds(), **self._data()}
+        return elements(nodes, triangles, self.regions, corners=len(self.vertices), height=height, layers=layers, **about)
 
     def _bounds(self) -> tuple[float, float, float, float] | None:
         """Return the frame of the image, if the mesh has one."""

@@ -33,12 +33,14 @@ ORDER = [
     {"paper"},
     {"recipes", "certificate"},
     {"options"},
+    {"mesh_pictures"},
     {"mesh"},
     {"pipeline"},
+    {"app"},
     {"cli"},
     {"__main__"},
 ]
-FOLDERS = {*ROOMS, "paper", "recipes", "certificate", "options", "cli"}  # their files may import each other
+FOLDERS = {*ROOMS, "paper", "recipes", "certificate", "options", "app", "cli"}  # their files may import each other
 # numpy is at home everywhere.
 LIBRARIES = {
     "raster": {"cv2", "PIL", "tifffile", "pydicom", "nibabel", "scipy"},  # scipy joins runs of pixels to components
@@ -49,9 +51,12 @@ LIBRARIES = {
     "recipes": {"scipy"},
     "certificate": {"shapely", "scipy"},
     "mesh": {"skfem", "shapely", "trimesh", "pyvista", "matplotlib"},  # for types only
+    "mesh_pictures": {"matplotlib"},
+    "app": {"starlette", "uvicorn", "anywidget", "traitlets", "matplotlib"},
     "cli": {"rich"},
 }
 HEAVY = {"cv2", "PIL", "tifffile", "scipy", "shapely", "igl", "pythoncdt", "trimesh", "pyvista", "vtkmodules", "matplotlib", "rich"}
+HEAVY |= {"starlette", "uvicorn", "anywidget"}
 ALLOWED = {"pyproject.toml", "README.md", "LICENSE", "img2tri", "tests", "examples", "data"}
 
 in_checkout = pytest.mark.skipif(not (ROOT / "pyproject.toml").exists(), reason="only where the sources are checked out")

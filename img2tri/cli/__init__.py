@@ -6,7 +6,7 @@
     jobs                -> outcomes      batch       one after the other, or by several processes
     outcomes            -> words         printing    the one place that prints
 
-`streams` has stdin and stdout as files; `program` puts the parts together.
+`app_command` starts the app; `streams` has stdin and stdout as files; `program` puts the parts together.
 """
 
 from __future__ import annotations

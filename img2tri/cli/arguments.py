@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from img2tri import __version__
+from img2tri.cli.app_command import add_app
 from img2tri.cli.mesh_options import add_mesh_options
 from img2tri.options.typed import number, whole_number
 
@@ -23,6 +24,7 @@ EXAMPLES = """examples:
   img2tri mesh scans/*.png -o "meshes/{stem}.ply" --report "reports/{stem}.json"
   cat femur.png | img2tri mesh - -o - --format stl > femur.stl
   img2tri view-report femur.png -o femur.html --edge-length 8
+  img2tri app femur.png
   img2tri quality femur.stl
 """
 MESH = """Mesh images: the white zone, or every label of a label map.
@@ -117,6 +119,7 @@ def _parser() -> ArgumentParser:
     page.add_argument("-o", "--output", required=True, metavar="PAGE", help=".html, or - for stdout")
     page.add_argument("--quiet", action="store_true", help="print errors only")
     add_mesh_options(page)
+    add_app(commands)
     quality = commands.add_parser("quality", help="judge meshes", description=QUALITY, formatter_class=_formatter, allow_abbrev=False)
     quality.add_argument("meshes", nargs="+", metavar="MESH", help=".stl, .ply, .obj, .off, .glb, .vtp, .vtu, .msh or .bdf; - for stdin")
     quality.add_argument("--format", metavar="F", help="of a mesh on stdin, such as stl")

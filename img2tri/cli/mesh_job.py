@@ -92,25 +92,13 @@ def _made(job: Job, progress: Progress) -> Outcome:
 
 def view(job: Job, command: str, progress: Progress) -> tuple[Outcome, str]:
     """Mesh an image; return what there is to say about the mesh, and a page about it."""
+    from img2tri.mesh_pictures import page_about
     from img2tri.pipeline import mesh_image
-    from img2tri.triangles.tools.quality_summary import measure
-    from img2tri.views.page.html_page import page
 
     image = opened(job.image, job.options)
     mesh = mesh_image(image, progress=progress, **job.options)
-    text = page(
-        mesh.vertices,
-        mesh.triangles,
-        **measure(mesh.vertices, mesh.triangles, ["q", "min_angle"]),
-        frame=mesh.frame,
-        report=mesh.report.to_json(),
-        regions=mesh.regions,
-        image=meshed_pixels(image, job.options),
-        names=mesh.names,
-        title=os.path.basename(job.image) if job.image != DASH else STEM,
-        command=command,
-        unit=(mesh.origin and mesh.origin.settings.get("units")) or "",
-    )
+    title = os.path.basename(job.image) if job.image != DASH else STEM
+    text = page_about(mesh, meshed_pixels(image, job.options), title=title, command=command)
     return Outcome(job.image, about(job.image, mesh), mesh.report.warnings), text
 
 

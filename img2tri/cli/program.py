@@ -1,4 +1,4 @@
-"""The command line: ``img2tri mesh``, ``view-report`` and ``quality``, put together from its parts in `img2tri.cli`.
+"""The command line: ``img2tri mesh``, ``view-report``, ``app`` and ``quality``, put together from its parts in `img2tri.cli`.
 
 Options go to `img2tri.mesh_image` under the names it knows, and only if they were given, so its defaults and its checks are the only
 ones. Whatever is not as it must be becomes one line on stderr and exit status 2; one bad file does not stop the others. Nothing heavy is
@@ -16,6 +16,7 @@ from contextlib import closing
 from dataclasses import replace
 from functools import partial
 
+from img2tri.cli.app_command import run_app
 from img2tri.cli.arguments import parse
 from img2tri.cli.batch import run
 from img2tri.cli.jobs import Job, folder, jobs_of, mesh_options, suffix_of_stdin
@@ -50,7 +51,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")  # the name of a file may hold what the terminal cannot show
     try:
-        if arguments.command == "view-report":
+        if arguments.command == "app":
+            status = run_app(arguments)
+        elif arguments.command == "view-report":
             status = _view_report(arguments, typed)
         else:
             status = (_mesh if arguments.command == "mesh" else _quality)(arguments)

@@ -39,7 +39,7 @@ def read(
     image
         A path (str or PathLike), or a file opened in binary mode, which is read to its end; an array (h, w) or (h, w, 3 or 4)
         of bool, integers or floats; or a planar ``pyvista.ImageData``, whose active scalars are taken (its first ones if none are
-        active).
+        active). A `Picture` was read before, with its own options, and is returned as it is.
     spacing
         The size of a pixel in world units: a number, a pair (dx, dy), or "file", which takes the size or resolution noted in a
         TIFF, PNG, JPEG, DICOM or NIfTI file, in millimetres. None is "file" for DICOM and NIfTI, if they note a size; 1 for
@@ -77,6 +77,8 @@ def read(
     >>> picture.frame.bounds
     (0.0, 0.0, 15.0, 10.0)
     """
+    if isinstance(image, Picture):
+        return image
     page, max_pixels = integer("page", page), integer("max_pixels", max_pixels, least=1)
     if is_image_data(image):
         if spacing is not None or not (isinstance(origin, str) and origin == "lower") or page:

@@ -98,6 +98,23 @@ class Cells:
         return np.asarray(self.cells[cell[:, None], local])
 
 
+def elements(
+    nodes: Floats, triangles: Ints, regions: ArrayLike, *, corners: int, height: float | None, layers: int, z: float = 0.0, **about: Any
+) -> Cells:
+    """Return the elements of a plane mesh, or with `height` wedges in so many `layers`; triangles of 6 nodes are quadratic.
+
+    The first `corners` of the nodes are vertices; `about` is as for `flat_cells`.
+    """
+    from img2tri.views.objects.wedges import wedges
+
+    flat = flat_cells(nodes, triangles, regions, z=z, **about)
+    if height is None:
+        return flat
+    order, middles = (1, None) if triangles.shape[1] == 3 else (2, nodes[corners:])
+    points, cells, _ = wedges(nodes[:corners], triangles[:, :3], height=height, layers=layers, order=order, z=z, middles=middles)
+    return solid_cells(flat, points, cells)
+
+
 def flat_cells(
     points: ArrayLike,
     elements: ArrayLike,

@@ -5,7 +5,8 @@ html_tables    What the page says in words and tables: the certificate, as plain
 histogram_svg  How many triangles have which quality: one number per triangle -> a chart as an SVG.
 image_png      An array -> the bytes of a PNG file.
 packing        The mesh as bytes a browser takes for arrays.
-drawing.js     These bytes -> the mesh, and bitmaps of it; viewer.js moves and marks them; page.js is what is around it.
+drawing.js     These bytes -> the mesh, and bitmaps of it; viewer.js moves and marks them; page.js is what is around it;
+               alone.js begins where all is in the page.
 
 The app and the notebook (`img2tri.app`) show the same page with knobs.
 """

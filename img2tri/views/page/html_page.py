@@ -8,7 +8,6 @@ it is read without a network, by any browser, years later. What it says in words
 from __future__ import annotations
 
 import base64
-import json
 import re
 import zlib
 from collections.abc import Mapping
@@ -21,7 +20,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from img2tri import __version__
 from img2tri.arrays import Floats, Ints
-from img2tri.errors import MeshError
 from img2tri.types import Frame
 from img2tri.views.objects.body_per_region import unique_names
 from img2tri.views.objects.flat_or_extruded import per_triangle, plane_mesh
@@ -31,6 +29,11 @@ from img2tri.views.page.image_png import png
 from img2tri.views.page.packing import LARGEST_ANGLE, colours, packed_mesh
 
 SCRIPTS = ("drawing.js", "viewer.js", "page.js")
+POLICY = "default-src 'none'; img-src data: blob:; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
+EMPTY = {
+    "version": __version__, "title": "", "knobs": "", "python": "", "foot": "", "command": "", "verdict": "", "tiles": "", "warnings": "",
+    "certificate": "", "charts": "", "regions": "", "settings": "",
+}  # fmt: skip
 _PIXELS = 4096  # of the image along either side; more are thinned out, as browsers refuse much larger ones
 
 
@@ -97,28 +100,33 @@ def page(
     labels = np.ones(len(t), np.int64) if regions is None else per_triangle("regions", regions, len(t))
     quality = per_triangle("q", q, len(t)).astype(np.float64)
     angle = per_triangle("min_angle", min_angle, len(t)).astype(np.float64)
-    facts = _facts(report)
+    facts = tables.from_json(report)
     places = tables.places(facts)
     called = dict(names or {})
     packed = packed_mesh(v, t, labels, q=quality, min_angle=angle, frame=frame, names=called, unit=unit, places=places)
     picture = "" if image is None else base64.b64encode(png(thinned(np.asarray(image), _PIXELS))).decode()
     fill = {
+        **EMPTY,
         **pieces(v, t, labels, q=quality, min_angle=angle, names=called, facts=facts),
         "title": tables.text(title),
-        "knobs": "",
         "command": tables.text(command),
-        "python": "",
         "foot": "this page needs nothing but itself",
+    }
+    data = {
+        "report": ("application/json", _inert(report)),
+        "mesh": ("application/octet-stream", base64.b64encode(zlib.compress(packed, 6)).decode()),
+        "picture": ("application/octet-stream", picture),
     }
     parts = {
         "version": __version__,
         "title": fill["title"],
+        "policy": f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">',
+        "kind": "img2tri",
         "style": resource("page.css"),
         "body": filled(resource("body.html"), fill),
-        "report": _inert(report),
-        "mesh": base64.b64encode(zlib.compress(packed, 6)).decode(),
-        "picture": picture and f'<script type="application/octet-stream" id="picture">{picture}</script>',
-        "script": "".join(resource(name) for name in SCRIPTS),
+        "data": "\n".join(f'<script type="{kind}" id="{name}">{text}</script>' for name, (kind, text) in data.items() if text),
+        "nonce": "",
+        "script": "".join(map(resource, (*SCRIPTS, "alone.js"))),
     }
     return filled(resource("page.html"), parts)
 
@@ -139,7 +147,6 @@ def pieces(
     places = tables.places(facts)
     rows = [*zip(present.tolist(), called.values(), colours(len(present)), counted.tolist(), strict=True)]
     return {
-        "version": __version__,
         "verdict": tables.verdict(facts),
         "tiles": tables.tiles(facts, len(vertices), len(triangles), len(present), q, min_angle),
         "warnings": tables.warnings(facts, places),
@@ -154,16 +161,6 @@ def pieces(
 def filled(text: str, parts: Mapping[str, str]) -> str:
     """Fill in the places ``@name@`` of a text, in one pass, so that nothing that is filled in is taken for a place to fill."""
     return re.sub(r"@(\w+)@", lambda found: parts[found[1]], text)
-
-
-def _facts(report: str) -> dict[str, Any]:
-    try:
-        facts = json.loads(report)
-    except ValueError as problem:
-        raise MeshError(f"report: expected JSON, found {report[:40]!r}: {problem}") from None
-    if not isinstance(facts, dict):
-        raise MeshError(f"report: expected an object of JSON, found {type(facts).__name__}")
-    return facts
 
 
 def thinned(image: NDArray[Any], most: int) -> NDArray[Any]:

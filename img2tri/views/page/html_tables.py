@@ -6,11 +6,13 @@ Each promise is a row of the certificate: what was found, what was promised, and
 from __future__ import annotations
 
 import html
+import json
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from img2tri.errors import MeshError
 from img2tri.types import Floats
 
 _DEFECTS = {
@@ -47,6 +49,23 @@ class Place:
     number: int
     first: bool
     source: str
+
+
+def from_json(report: str) -> dict[str, Any]:
+    """Return a certificate as plain data.
+
+    Raises
+    ------
+    MeshError
+        If it is none.
+    """
+    try:
+        facts = json.loads(report)
+    except ValueError as problem:
+        raise MeshError(f"report: expected JSON, found {report[:40]!r}: {problem}") from None
+    if not isinstance(facts, dict):
+        raise MeshError(f"report: expected an object of JSON, found {type(facts).__name__}")
+    return facts
 
 
 def text(words: object) -> str:

@@ -58,7 +58,7 @@ def packed_mesh(
     present, index = np.unique(regions, return_inverse=True)
     called = unique_names(present.tolist(), names)
     edges, sides = unique_edges(triangles)
-    xy, spots = page_coordinates(vertices, frame), page_coordinates(np.array([place.at for place in places]).reshape(-1, 2), frame)
+    xy = page_coordinates(vertices, frame)
     view = {
         **placed(frame, unit),
         "box": [*xy.min(axis=0).tolist(), *xy.max(axis=0).tolist()],
@@ -68,9 +68,7 @@ def packed_mesh(
             {"label": label, "name": called[label], "colour": colour}
             for label, colour in zip(present.tolist(), colours(len(present)), strict=True)
         ],
-        "places": [
-            {"x": x, "y": y, "number": place.number, "first": place.first} for place, (x, y) in zip(places, spots.tolist(), strict=True)
-        ],
+        "places": placed_marks(places, frame),
         "worst": _worst(min_angle),
     }
     arrays = {
@@ -93,6 +91,12 @@ def placed(frame: Frame, unit: str) -> dict[str, Any]:
         "upward": frame.upward,
         "unit": unit,
     }
+
+
+def placed_marks(places: Sequence[Place], frame: Frame) -> list[dict[str, Any]]:
+    """Say where on the page the places to be looked at are, and of which warning."""
+    spots = page_coordinates(np.array([place.at for place in places]).reshape(-1, 2), frame).tolist()
+    return [{"x": x, "y": y, "number": place.number, "first": place.first} for place, (x, y) in zip(places, spots, strict=True)]
 
 
 def page_coordinates(points: Floats, frame: Frame) -> Floats:

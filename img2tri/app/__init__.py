@@ -1,0 +1,13 @@
+"""Turn the knobs and watch the mesh: one viewer, in a browser (`img2tri app`) and in a notebook (`img2tri.explore`).
+
+session       An image and its mesh under changing options: wishes in, bytes for the viewer out. It knows nothing of who asks.
+image_facts   What the knobs start from: size, kind, histogram and regions of an image, and its pixels for the mask.
+knobs         The options as knobs, and texts typed into them -> values.
+spelling      Options that differ from their defaults -> the command line and the Python that make the same mesh.
+downloads     The mesh as the bytes of a file of any format.
+app_page      The viewer's page with the knobs beside it.
+server        The app: a page and its answers, on this machine only.
+
+Beside them: knobs.html and knobs.css, what stands beside the viewer; knobs.js, what the knobs do. The viewer itself is that of
+`img2tri.views.page`.
+"""
