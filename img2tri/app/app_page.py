@@ -7,7 +7,7 @@ from functools import cache
 from importlib.resources import files
 
 from img2tri import __version__
-from img2tri.views.page.html_page import EMPTY, SCRIPTS, filled, resource
+from img2tri.views.page.html_page import BLANK, SCRIPTS, filled, resource
 
 
 @cache
@@ -40,7 +40,7 @@ def style() -> str:
 def body(foot: str) -> str:
     """Return viewer and knobs as HTML, yet without an image."""
     parts = {"title": "img2tri", "knobs": own("knobs.html"), "python": own("python.html"), "foot": foot}
-    return filled(resource("body.html"), EMPTY | parts)
+    return filled(resource("body.html"), BLANK | parts)
 
 
 def scripts(last: str) -> str:

@@ -30,6 +30,11 @@ knob.value = arguments[1];
 for (const kind of ['input', 'change']) knob.dispatchEvent(new Event(kind, { bubbles: true }));
 return before
 """
+TINT = """
+const e = document.getElementById('levels');
+e.value = arguments[0];
+e.dispatchEvent(new Event('input', { bubbles: true }));
+"""
 PAN = """
 const viewer = document.getElementById('canvas'), box = viewer.getBoundingClientRect(), frames = [];
 const at = (type, i) => viewer.dispatchEvent(new PointerEvent(type, { pointerId: 1, bubbles: true, isPrimary: true,
@@ -81,10 +86,7 @@ def test_from_knob_to_picture(tab, tmp_path, size, knob, mask, certificate):
         row(f"{size} x {size}: certificate, after the rest of 250", float(np.median(certified)), certificate + 250)
         tinted = []
         for level in range(90, 130, 5):
-            tab.run(
-                "const e = document.getElementById('levels'); e.value = arguments[0]; e.dispatchEvent(new Event('input', { bubbles: true }))",
-                level,
-            )
+            tab.run(TINT, level)
             tinted.append(float(tab.run(f"return {CANVAS}.mask")))
         row(f"{size} x {size}: mask", float(np.median(tinted)), mask)
         tab.until(f"{CANVAS}.certified === {CANVAS}.shown")

@@ -30,7 +30,7 @@ from img2tri.views.page.packing import LARGEST_ANGLE, colours, packed_mesh
 
 SCRIPTS = ("drawing.js", "viewer.js", "page.js")
 POLICY = "default-src 'none'; img-src data: blob:; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
-EMPTY = {
+BLANK = {
     "version": __version__, "title": "", "knobs": "", "python": "", "foot": "", "command": "", "verdict": "", "tiles": "", "warnings": "",
     "certificate": "", "charts": "", "regions": "", "settings": "",
 }  # fmt: skip
@@ -106,7 +106,7 @@ def page(
     packed = packed_mesh(v, t, labels, q=quality, min_angle=angle, frame=frame, names=called, unit=unit, places=places)
     picture = "" if image is None else base64.b64encode(png(thinned(np.asarray(image), _PIXELS))).decode()
     fill = {
-        **EMPTY,
+        **BLANK,
         **pieces(v, t, labels, q=quality, min_angle=angle, names=called, facts=facts),
         "title": tables.text(title),
         "command": tables.text(command),
