@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 
 from img2tri import TriangleMesh, mesh_image
 from img2tri.arrays import unique_edges
-from img2tri.triangles.generate.constrained_delaunay import refine
+from img2tri.triangles.generate.constrained_delaunay import ruppert
 from img2tri.triangles.tools.topology import boundary_edges
 
 DATA = Path(__file__).resolve().parent.parent / "data"
@@ -53,7 +53,7 @@ def graded(mesh: TriangleMesh) -> TriangleMesh:
     edges = boundary_edges(mesh.triangles)
     used, segments = np.unique(edges, return_inverse=True)
     inside, outside = np.ones(len(edges), int), np.zeros(len(edges), int)
-    made = refine(mesh.vertices[used], segments.reshape(-1, 2), inside, outside, 30.0, 0.0)
+    made = ruppert(mesh.vertices[used], segments.reshape(-1, 2), inside, outside, 30.0, 0.0)
     return TriangleMesh(made.vertices, made.triangles, made.regions)
 
 

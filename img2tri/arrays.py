@@ -6,11 +6,14 @@ are one operation each. Where they are handed on to users they are rows (n, 2).
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+
+from img2tri.errors import bounded
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -113,6 +116,52 @@ def unique_edges(triangles: Ints) -> tuple[Ints, Ints]:
     n = int(triangles.max(initial=0)) + 1
     keys, sides = np.unique(np.minimum(start, end) * n + np.maximum(start, end), return_inverse=True)
     return np.stack(np.divmod(keys, n), axis=1), sides.reshape(triangles.shape)
+
+
+def independent(lower: Ints, higher: Ints, n: int) -> Bools:
+    """Choose items of which no two are in conflict: in the order of their numbers, each that is in conflict with none chosen before.
+
+    This greedy maximal independent set is found in rounds: an open item with no open conflict with a lower one is chosen, and those in
+    conflict with it are refused.
+
+    Parameters
+    ----------
+    lower, higher
+        (k,) int64, pairs of items in conflict, the lower number first; a pair may come twice.
+    n
+        Number of items.
+
+    Returns
+    -------
+    chosen : (n,) bool
+
+    Examples
+    --------
+    >>> independent(np.array([0, 1, 2]), np.array([1, 2, 3]), 4).tolist()
+    [True, False, True, False]
+    """
+    chosen = np.ones(n, bool)
+    # Each round settles at least the pair with the lowest item.
+    for _ in bounded("independent set", len(lower) + 1):
+        if not len(lower):
+            break
+        sure = np.ones(n, bool)
+        sure[higher] = False
+        chosen[higher[sure[lower]]] = False
+        open_ = chosen[lower] & chosen[higher]
+        lower, higher = lower[open_], higher[open_]
+    return chosen
+
+
+def blocks(count: int, size: int = 1 << 15) -> Iterator[slice]:
+    """Cut a large array into blocks that fit the cache: fetching memory for all of it, again and again, takes longer than the work.
+
+    Examples
+    --------
+    >>> [(block.start, block.stop) for block in blocks(5, 2)]
+    [(0, 2), (2, 4), (4, 5)]
+    """
+    return (slice(start, min(start + size, count)) for start in range(0, count, size))
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -33,8 +32,10 @@ from img2tri.shapes.trace.dual_edges import DualEdges, pixel_areas
 from img2tri.types import Frame, Outlines, RecipeMesh
 
 if TYPE_CHECKING:
-    from img2tri.triangles.generate.constrained_delaunay import NetworkError
-    from img2tri.triangles.generate.strip import Slide
+    from img2tri.triangles.generate.constrained_delaunay import PslgError
+
+Mesh = tuple[Floats, Ints, Ints]
+"""Vertices (n, 2), triangles (m, 3) and regions (m,)."""
 
 AREA_ERROR = 1e-4  # relative, of a region: above it vertices are offset for its sake
 USUAL_TRIANGLES = 2000  # what the default edge length aims at
@@ -160,8 +161,7 @@ def conform(
     progress: Callable[[str, float], object] | None = None,
 ) -> RecipeMesh:
     """Mesh all regions of an image, given its dense outlines; lengths in px."""
-    from img2tri.triangles.generate.constrained_delaunay import NetworkError
-    from img2tri.triangles.generate.strip import Slide
+    from img2tri.triangles.generate.constrained_delaunay import PslgError
 
     tell = progress or (lambda *_: None)
     count = len(outlines.left)
@@ -170,15 +170,11 @@ def conform(
     coarse = _spaced(outlines, dual_edges, pairs, sizes, tolerance, corners == "keep", keep_area)
     if keep_area and area_error(coarse) > AREA_ERROR:
         coarse = pairs.enforce_tolerance(preserve_areas(coarse, tolerance=tolerance), tolerance=tolerance)
+    demands = _Demands(tolerance, min_angle, keep_area, interior, seed)
     yielding, began = tolerance, 0
     for attempt in range(ATTEMPTS):
         tell("triangles", 1 - 0.6 * 0.7**attempt)
-        slide = None
-        if interior == "lattice":
-            slide = Slide(
-                slide_limits(coarse, shortest=sizes.shortest), partial(relocate, coarse, tolerance=tolerance, keep_area=keep_area)
-            )
-        mesh, chains, doubtful = _filled(coarse, pairs, sizes, slide, min_angle=min_angle, seed=seed)
+        mesh, chains, doubtful = _filled(coarse, pairs, sizes, demands)
         if not len(doubtful) or attempt + 1 == ATTEMPTS:
             break
         before = coarse
@@ -190,7 +186,7 @@ def conform(
         if same or attempt + 1 == ATTEMPTS // 2:
             # Rather too far from the outline than too sharp; the report tells.
             yielding, began = max(tolerance, WAY_BACK), attempt + 1
-    if isinstance(mesh, NetworkError):
+    if isinstance(mesh, PslgError):
         raise mesh
     pairs.check(chains, mesh[0])
     counted = {"rounds": attempt + 1, "reset": int(coarse.snapped.sum())}
@@ -200,38 +196,59 @@ def conform(
     return RecipeMesh(*mesh, counted)
 
 
-def _filled(
-    coarse: Simplification, pairs: PeriodicPairs, sizes: Sizes, slide: Slide | None, *, min_angle: float, seed: int
-) -> tuple[tuple[Floats, Ints, Ints] | NetworkError, Outlines, Floats]:
-    """Fill coarse outlines, with a lattice if their points may slide, else with scattered points.
+@dataclass(frozen=True)
+class _Demands:
+    """What is asked of the mesh between outlines, see `img2tri.options.mesh_options.FillOptions`; the tolerance in px."""
+
+    tolerance: float
+    min_angle: float
+    keep_area: bool
+    interior: str
+    seed: int
+
+
+def _filled(coarse: Simplification, pairs: PeriodicPairs, sizes: Sizes, demands: _Demands) -> tuple[Mesh | PslgError, Outlines, Floats]:
+    """Fill coarse outlines, with a lattice or with scattered points.
 
     Return vertices, triangles and regions, or why there are none; the outlines, opposite sides divided alike; and places (k, 2) where
     these are at fault: at the corners of triangles with too small an angle, or where no mesh could be made.
     """
     from img2tri.recipes.poisson_interior import scattered
-    from img2tri.triangles.generate.constrained_delaunay import NetworkError
-    from img2tri.triangles.generate.filling import fill
-    from img2tri.triangles.generate.quality_smoothing import narrow
+    from img2tri.triangles.angles import narrower
+    from img2tri.triangles.generate.constrained_delaunay import PslgError
 
     chains = coarse.coarse()
     try:
         for _ in range(FILLINGS):
-            segments, left, right = chains.segments
-            if slide is None:
-                mesh = scattered(chains, sizes.longest, sizes.field, min_angle=min_angle, seed=seed)
+            if demands.interior == "lattice":
+                mesh = _with_lattice(coarse, chains, sizes, demands)
             else:
-                mesh = fill(
-                    chains.points, segments, left, right, edge_length=sizes.longest, min_angle=min_angle,
-                    gradation=sizes.gradation, size=sizes.field, slide=slide, seed=seed,
-                )  # fmt: skip
+                mesh = scattered(chains, sizes.longest, sizes.field, min_angle=demands.min_angle, seed=demands.seed)
             filled, chains = chains, pairs.divided_alike(chains, mesh[0])
             if chains is filled:
                 break
-    except NetworkError as error:
+    except PslgError as error:
+        segments = chains.segments[0]
         return error, chains, chains.points[segments[error.segments if len(error.segments) else slice(None)]].reshape(-1, 2)
     vertices, triangles, _ = mesh
-    sharp = narrow(vertices.view(np.complex128)[:, 0], triangles, min_angle - 1e-9)
+    sharp = narrower(as_complex(vertices), triangles, demands.min_angle - 1e-9)
     return mesh, chains, vertices[triangles[sharp]].reshape(-1, 2)
+
+
+def _with_lattice(coarse: Simplification, chains: Outlines, sizes: Sizes, demands: _Demands) -> Mesh:
+    """Begin a mesh, ask the outlines where their points may be that it wants elsewhere, finish it."""
+    from img2tri.triangles.generate.filling import begin, finish
+
+    segments, left, right = chains.segments
+    limits = slide_limits(coarse, shortest=sizes.shortest)
+    begun = begin(
+        chains.points, segments, left, right, edge_length=sizes.longest, gradation=sizes.gradation, size=sizes.field,
+        limits=limits, seed=demands.seed,
+    )  # fmt: skip
+    # Opposite sides divided alike add points after those of the outlines; only the latter have their places there.
+    own, added = np.split(begun.wanted, [len(limits)])
+    places = relocate(coarse, own, tolerance=demands.tolerance, keep_area=demands.keep_area)
+    return finish(begun, np.concatenate([places, added]), min_angle=demands.min_angle)
 
 
 def _spaced(

@@ -1,9 +1,9 @@
 """Coarse outlines -> triangles, with points inside scattered by chance: the paper's interior between conforming outlines.
 
-Poisson-disk points fill each component until no more fit; where shorter edges are wanted in some places, they are thrown at the least
-distance, and thinned in random order to the distance wanted where they lie. A constrained triangulation keeps the outlines, and
-refinement adds points where an angle is too small. Scattered points have no direction, which a lattice has; their triangles are
-worse: mean q 0.94 against 0.98 and more.
+Poisson-disk points (`img2tri.paper.poisson_disk`) fill each component until no more fit. Where shorter edges are wanted in some places,
+they are thrown at the least distance, and thinned to the distance wanted where they lie. A constrained Delaunay triangulation keeps the
+outlines, and Ruppert's refinement adds points where an angle is too small. Scattered points have no direction, which a lattice has;
+their triangles are worse: mean q 0.94 against 0.98 and more.
 """
 
 from __future__ import annotations
@@ -12,12 +12,13 @@ from collections.abc import Callable
 
 import numpy as np
 
+from img2tri.arrays import Bools, Floats, Ints, independent
 from img2tri.paper.poisson_disk import DISTANCE_PER_EDGE, poisson_disk
 from img2tri.shapes.polygons import component_polygons
-from img2tri.triangles.generate.constrained_delaunay import refine
-from img2tri.types import Bools, Floats, Ints, Outlines
+from img2tri.triangles.generate.constrained_delaunay import ruppert
+from img2tri.types import Outlines
 
-SHORTEST = 0.03  # px: no shorter edge is split for the sake of angles
+SHORTEST_SPLIT = 0.03  # px: no shorter edge is split for the sake of angles
 
 
 def scattered(
@@ -56,7 +57,7 @@ def scattered(
         clear = cKDTree(chains.points).query(points)[0] > distance
         points, distance = points[clear], distance[clear]
         points = points[_thinned(points, distance)]
-    found = refine(np.concatenate([chains.points, points]), segments, left, right, min_angle, SHORTEST)
+    found = ruppert(np.concatenate([chains.points, points]), segments, left, right, min_angle, SHORTEST_SPLIT)
     return found.vertices, found.triangles, found.regions
 
 
@@ -68,22 +69,11 @@ def _sampled(field: Callable[[Floats], Floats], points: Floats) -> Floats:
 
 
 def _thinned(points: Floats, distance: Floats) -> Bools:
-    """Keep points that are each as far from all others kept as both ask for on average, in the order of the points."""
+    """Keep points that are each as far from all others kept as both ask for on average, the first ones first."""
     from scipy.spatial import cKDTree
 
     pairs = cKDTree(points).query_pairs(float(distance.max()), output_type="ndarray")
-    one, other = pairs.min(axis=1), pairs.max(axis=1)
-    apart = np.hypot(*(points[one] - points[other]).T)
-    close = apart < (distance[one] + distance[other]) / 2
-    one, other = one[close], other[close]
-    kept, undecided = np.zeros(len(points), bool), np.ones(len(points), bool)
-    # In rounds: an undecided point stays if no earlier undecided one is near, and removes its neighbours.
-    while undecided.any():
-        blocked = np.zeros(len(points), bool)
-        blocked[other[undecided[one] & undecided[other]]] = True
-        stays = undecided & ~blocked
-        kept |= stays
-        undecided &= ~stays
-        undecided[other[stays[one]]] = False
-        undecided[one[stays[other]]] = False
-    return kept
+    lower, higher = pairs.min(axis=1), pairs.max(axis=1)
+    apart = np.hypot(*(points[lower] - points[higher]).T)
+    close = apart < (distance[lower] + distance[higher]) / 2
+    return independent(lower[close], higher[close], len(points))

@@ -2,4 +2,5 @@
 
 generate   Outlines -> triangles: the mesh is made here.
 tools      Any mesh: topology, quality, smoothing. Neither folder imports the other.
+angles     The smallest angle of each triangle, which both look at.
 """

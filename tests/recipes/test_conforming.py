@@ -54,19 +54,19 @@ def test_any_edge_length(edge_length):
     check(specimens.polycrystal(), edge_length=edge_length)
 
 
-def test_where_no_network_can_be_filled_its_error_is_what_one_gets(monkeypatch):
+def test_where_no_outlines_can_be_filled_its_error_is_what_one_gets(monkeypatch):
     """Also where refining the outlines changes nothing any more, before all attempts are used up."""
     from img2tri.errors import MeshError
     from img2tri.triangles.generate import filling
-    from img2tri.triangles.generate.constrained_delaunay import NetworkError
+    from img2tri.triangles.generate.constrained_delaunay import PslgError
 
     tried = []
 
     def never(*_, **__):
         tried.append(1)
-        raise NetworkError("network: expected another one")
+        raise PslgError("points: expected another one")
 
-    monkeypatch.setattr(filling, "fill", never)
+    monkeypatch.setattr(filling, "begin", never)
     with pytest.raises(MeshError, match="expected another one"):
         mesh_image(np.ones((1, 1), bool), edge_length=8)
     assert 1 < len(tried) <= conforming.ATTEMPTS

@@ -1,10 +1,11 @@
 """Constrained Delaunay triangulation, and the proof that its faces are the regions they should be.
 
 In: points, segments that must appear as edges, and the regions on the left and right of each segment. Out: triangles, each with its
-region. The triangulation itself is pythoncdt's (exact predicates). The regions are found by flooding: triangles joined across edges
-that are no segments make a face, and every segment casts two votes, one for the face on each of its sides. If all votes agree, each
-region lies on the side of its outlines where it belongs, whatever was done to the outlines before; if not, two outlines have
-changed sides or crossed, and `NetworkError` says where.
+region. The triangulation itself is pythoncdt's, with exact predicates (L. P. Chew, Constrained Delaunay triangulations, Algorithmica 4,
+1989, https://doi.org/10.1007/BF01553881). The regions are found by flood fill: triangles joined across edges that are no segments make
+a face, and every segment casts two votes, one for the face on each of its sides. If all votes agree, each region lies on the side of its
+outlines where it belongs, whatever was done to the outlines before; if not, two outlines have changed sides or crossed, and `PslgError`
+says where.
 
 Libraries offer to erase "outer triangles and holes" by counting how many outlines surround them. Votes are safer, as they check;
 they serve any number of regions; and they are faster.
@@ -21,14 +22,14 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
+from img2tri.arrays import Floats, Ints
 from img2tri.errors import MeshError
-from img2tri.types import Floats, Ints
 
-SUPER = 3  # pythoncdt puts the corners of one triangle around everything before the vertices it was given
+SUPER = 3  # corners of one triangle around everything, which pythoncdt puts before the vertices it was given
 
 
-class NetworkError(MeshError):
-    """Points and segments are no planar network, or the regions named by segments around one face differ.
+class PslgError(MeshError):
+    """Points and segments are no planar straight-line graph, or the regions named by segments around one face differ.
 
     Attributes
     ----------
@@ -42,7 +43,7 @@ class NetworkError(MeshError):
 
 
 def triangulate(points: Floats, segments: Ints, left: Ints, right: Ints) -> tuple[Ints, Ints]:
-    """Triangulate the regions of a network of segments.
+    """Triangulate the regions between segments.
 
     Every point of a region other than 0 is a vertex, every segment an edge; apart from that the triangles are Delaunay.
 
@@ -64,7 +65,7 @@ def triangulate(points: Floats, segments: Ints, left: Ints, right: Ints) -> tupl
 
     Raises
     ------
-    NetworkError
+    PslgError
         If segments cross, points coincide, or the regions contradict each other.
 
     Examples
@@ -77,7 +78,7 @@ def triangulate(points: Floats, segments: Ints, left: Ints, right: Ints) -> tupl
     >>> len(triangles), regions
     (4, array([7, 7, 7, 7]))
     """
-    check_network(points, segments, left, right)
+    check_pslg(points, segments, left, right)
     triangulation = _insert(points, segments)
     triangles, regions = _label(triangulation, len(points), segments, left, right)
     inside = np.flatnonzero(regions)
@@ -107,7 +108,7 @@ class Refined:
     origin: Ints
 
 
-def refine(points: Floats, segments: Ints, left: Ints, right: Ints, min_angle: float, min_edge: float) -> Refined:
+def ruppert(points: Floats, segments: Ints, left: Ints, right: Ints, min_angle: float, min_edge: float) -> Refined:
     """Triangulate as `triangulate` does, then add points until every angle is `min_angle` (Ruppert's refinement).
 
     Points are added at circumcentres, and in the middle of segments, which are thereby split. Where two segments meet in
@@ -124,9 +125,10 @@ def refine(points: Floats, segments: Ints, left: Ints, right: Ints, min_angle: f
 
     Notes
     -----
-    J. Ruppert, A Delaunay refinement algorithm for quality 2-dimensional mesh generation, J. Algorithms 18, 1995.
+    J. Ruppert, A Delaunay refinement algorithm for quality 2-dimensional mesh generation, J. Algorithms 18, 1995,
+    https://doi.org/10.1006/jagm.1995.1021.
     """
-    check_network(points, segments, left, right)
+    check_pslg(points, segments, left, right)
     triangulation = _insert(points, segments)
     _, regions = _label(triangulation, len(points), segments, left, right)
     outside = set(np.flatnonzero(regions == 0).tolist())
@@ -141,17 +143,17 @@ def refine(points: Floats, segments: Ints, left: Ints, right: Ints, min_angle: f
     return Refined(vertices, triangles[inside], regions[inside], pieces, whole)
 
 
-def check_network(points: Floats, segments: Ints, left: Ints, right: Ints) -> None:
-    """Check what can be told of a network without triangulating it: shapes, finite coordinates, indices, segments of no length."""
+def check_pslg(points: Floats, segments: Ints, left: Ints, right: Ints) -> None:
+    """Check what can be told without triangulating: shapes, finite coordinates, indices, segments of no length."""
     if points.ndim != 2 or points.shape[1] != 2 or not np.isfinite(points).all():
-        raise NetworkError(f"points: expected finite coordinates (n, 2), found shape {points.shape}, or NaN or infinity in them")
+        raise PslgError(f"points: expected finite coordinates (n, 2), found shape {points.shape}, or NaN or infinity in them")
     if segments.ndim != 2 or segments.shape[1] != 2 or not (left.shape == right.shape == segments.shape[:1]):
-        raise NetworkError(f"segments, left, right: expected (s, 2), (s,), (s,), found {segments.shape}, {left.shape}, {right.shape}")
+        raise PslgError(f"segments, left, right: expected (s, 2), (s,), (s,), found {segments.shape}, {left.shape}, {right.shape}")
     if len(segments) and not (segments.min() >= 0 and segments.max() < len(points)):
-        raise NetworkError(f"segments: expected indices of {len(points)} points, found {segments.min()} to {segments.max()}")
+        raise PslgError(f"segments: expected indices of {len(points)} points, found {segments.min()} to {segments.max()}")
     none = (points[segments[:, 0]] == points[segments[:, 1]]).all(axis=1)
     if none.any():
-        raise NetworkError("segments: expected two different points each", np.flatnonzero(none))
+        raise PslgError("segments: expected two different points each", np.flatnonzero(none))
 
 
 def _insert(points: Floats, segments: Ints) -> pythoncdt.Triangulation:
@@ -162,7 +164,7 @@ def _insert(points: Floats, segments: Ints) -> pythoncdt.Triangulation:
         triangulation.insert_vertices(np.ascontiguousarray(points, np.float64))  # type: ignore[call-overload, unused-ignore]
         triangulation.insert_edges(np.ascontiguousarray(segments, np.uint32))  # type: ignore[call-overload, unused-ignore]
     except RuntimeError as error:
-        raise NetworkError(f"points and segments: expected a planar network, found: {error}") from error
+        raise PslgError(f"points and segments: expected a planar straight-line graph, found: {error}") from error
     return triangulation
 
 
@@ -181,7 +183,7 @@ def _label(triangulation: pythoncdt.Triangulation, n: int, segments: Ints, left:
     wrong = region[faces[edges // 3]] != votes
     if wrong.any():
         at_fault = np.unique(owners[wrong])
-        raise NetworkError(f"left and right: expected one region on each face, found {len(at_fault)} segments that disagree", at_fault)
+        raise PslgError(f"left and right: expected one region on each face, found {len(at_fault)} segments that disagree", at_fault)
     return triangles, region[faces]
 
 
@@ -196,11 +198,11 @@ def _votes(triangles: Ints, n: int, segments: Ints, left: Ints, right: Ints) -> 
            /  0  \
           0-------1     numbers outside: corners
     """
-    in_network = np.zeros(n + SUPER, bool)
-    in_network[segments] = True  # a corner of the outermost triangle has a negative index: one of the last, which stay False
+    on_segments = np.zeros(n + SUPER, bool)
+    on_segments[segments] = True  # a corner of the outermost triangle has a negative index: one of the last, which stay False
     start = triangles.ravel()
     stop = triangles[:, [1, 2, 0]].ravel()
-    edges = np.flatnonzero(in_network[start] & in_network[stop])
+    edges = np.flatnonzero(on_segments[start] & on_segments[stop])
     # One number per directed edge: those of the segments, and those of the segments turned round.
     known = np.concatenate([segments[:, 0] * n + segments[:, 1], segments[:, 1] * n + segments[:, 0]])
     order = np.argsort(known)
@@ -210,14 +212,14 @@ def _votes(triangles: Ints, n: int, segments: Ints, left: Ints, right: Ints) -> 
     hit = known[found] == wanted
     edges, found = edges[hit], order[found[hit]]
     if len(edges) != len(known):
-        raise NetworkError("segments: expected each once, and no point on them")
+        raise PslgError("segments: expected each once, and no point on them")
     return edges, found % len(segments), np.concatenate([left, right])[found]
 
 
-def _faces(neighbours: NDArray[np.int32], walls: Ints) -> Ints:
-    """Give each face a number: triangles joined across edges that are no walls. A neighbour of -1 is none."""
+def _faces(neighbours: NDArray[np.int32], closed: Ints) -> Ints:
+    """Give each face a number: triangles joined across edges that are not closed. A neighbour of -1 is none."""
     passable = neighbours >= 0
-    passable.ravel()[walls] = False
+    passable.ravel()[closed] = False
     ends = np.zeros(len(neighbours) + 1, np.int32)
     a, b, c = passable.view(np.int8).T
     np.cumsum(a + b + c, out=ends[1:])

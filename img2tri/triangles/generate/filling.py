@@ -1,33 +1,72 @@
-"""Fill a network of outlines with triangles: the inside of the mesh.
+"""Fill the regions between outlines with triangles: the inside of the mesh, in two halves.
 
 In: points, segments, the regions on both sides of each segment, the wanted edge length. Out: a triangle mesh that has the segments as
 its edges. The way:
 
-    sizes     how long edges should be at each place                                       grading.py
-    divide    segments too long for that                                                   network.py
-    front     an apex over either side of each segment                                     front.py
-    lattice   hexagonal inside; its depth becomes triangles at once                        lattice.py
-    finer     nodes of nested lattices, where shorter edges are wanted                     grading.py
-    band      constrained Delaunay triangulation of what lies between                      band.py, delaunay.py
-    relax     move vertices, repair their number of triangles, move again;                 relaxing.py, repairing.py
-              those on outlines may slide along these
-    mend      where an angle is still too small: Ruppert's refinement, in a patch          mending.py
+    begin     sizes     how long edges should be at each place                                    size_function.py
+              divide    segments too long for that                                                pslg.py
+              apexes    a first layer of points in front of the segments                          first_layer.py
+              lattice   hexagonal inside; its core becomes triangles at once                      hexagonal_lattice.py
+              finer     nodes of nested lattices, where shorter edges are wanted                  graded_lattice.py
+              strip     constrained Delaunay triangulation of what lies between                   strip.py, constrained_delaunay.py
+              smooth    move vertices; those on outlines may slide along these                    quality_smoothing.py
+    finish    repair    too many or too few triangles at a vertex; smooth again                   valence_repair.py
+              refine    where an angle is still too small: Ruppert's refinement, in a patch       local_refinement.py
+
+Between the halves the caller, who knows the outlines, says where their points may be; `fill` does both and lets them stay.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from img2tri.arrays import Floats, Ints, as_complex, as_rows
 from img2tri.errors import ParameterError, finite, integer
-from img2tri.triangles.generate.constrained_delaunay import NetworkError, check_network
-from img2tri.triangles.generate.graded_lattice import Sizes, pairs
+from img2tri.triangles.generate.constrained_delaunay import PslgError, check_pslg
+from img2tri.triangles.generate.graded_lattice import lengths_near
 from img2tri.triangles.generate.hexagonal_lattice import Lattice
-from img2tri.triangles.generate.local_refinement import mended
-from img2tri.triangles.generate.pslg import Network
-from img2tri.triangles.generate.strip import Slide, band, completed, settled
-from img2tri.types import Floats, Ints
+from img2tri.triangles.generate.local_refinement import refine_locally
+from img2tri.triangles.generate.pslg import Pslg
+from img2tri.triangles.generate.size_function import SizeFunction
+from img2tri.triangles.generate.strip import RegionMesh, Strip, finish_strip, lay_strip, relax_strip, with_core
+
+LengthField = Callable[[Floats], Floats]
+MARGINS = (2, 8)  # rings of nodes between the strip's other points and the core, tried in turn; then there is no core
+
+
+@dataclass(frozen=True, eq=False)
+class Filling:
+    """A mesh half-way: smoothed once, with a core that has no triangles yet.
+
+    Attributes
+    ----------
+    pslg, sizes, at_points, at_middles
+        The outlines, divided; the size function, and the lengths wanted at their points and the middles of their segments.
+    lattice, strip, mesh
+        The lattice; the strip with a core as large as may be, and its mesh.
+    names
+        The regions by their codes, those of negative codes counted from the end.
+    n_given
+        How many points the caller gave.
+    """
+
+    pslg: Pslg
+    sizes: SizeFunction
+    at_points: Floats
+    at_middles: Floats
+    lattice: Lattice
+    strip: Strip
+    mesh: RegionMesh
+    names: Ints
+    n_given: int
+
+    @property
+    def wanted(self) -> Floats:
+        """(n, 2) where the triangles would like the points given by the caller to be, in their order."""
+        return as_rows(self.mesh.vertices[: self.n_given])
 
 
 def fill(
@@ -39,11 +78,10 @@ def fill(
     edge_length: float,
     min_angle: float = 30.0,
     gradation: float = 0.17,
-    size: Floats | Callable[[Floats], Floats] | None = None,
-    slide: Slide | None = None,
+    size: Floats | LengthField | None = None,
     seed: int = 0,
 ) -> tuple[Floats, Ints, Ints]:
-    """Fill the regions of a network of segments with triangles.
+    """Fill the regions between segments with triangles; the points stay where they are.
 
     Edges are about `edge_length` long, and shorter near shorter segments. Far from outlines triangles are equilateral; near them their
     worst angle is 40 degrees and more where segments are of even length.
@@ -59,30 +97,18 @@ def fill(
     edge_length : float
         Wanted length of edges. Segments should be about as long, or shorter in thin places.
     min_angle : float
-        Degrees. Where the mesh misses it, points are added. It is reached unless segments meet in sharp corners.
-    gradation : float
-        By how much the wanted length grows per unit of distance from short segments. Smaller values give better
-        triangles, and more.
-    size : (n,) float64 or callable, optional
-        Edge length wanted at each point; or a function of places (k, 2) that returns lengths (k,), which should itself grow by no more
-        than `gradation`. Only what is below `edge_length` counts.
-    slide : Slide, optional
-        How points may slide along their outlines; None: they stay.
-    seed : int
-        0 centres the lattice on the network; another number shifts it by chance, for another mesh as good.
+        Degrees, see `finish`.
+    gradation, size, seed
+        See `begin`.
 
     Returns
     -------
-    vertices : (v, 2) float64
-        The points, in their order, slid or not; then all others.
-    triangles : (m, 3) int64
-        Counter-clockwise. Every segment is an edge, or a chain of edges where it was long for the length wanted there.
-    regions : (m,) int64
-        The region of each triangle.
+    vertices, triangles, regions
+        As from `finish`.
 
     Raises
     ------
-    NetworkError
+    PslgError
         If segments cross or touch, or their regions contradict each other; its `segments` names them as far as they are known.
     ParameterError
         If an option has a value it cannot have.
@@ -96,50 +122,136 @@ def fill(
     >>> bool((vertices[:60] == circle).all()), np.unique(regions)
     (True, array([1]))
     """
-    edge_length = finite("edge_length", edge_length, above=0)
-    min_angle = finite("min_angle", min_angle, least=0, most=40)
-    gradation = finite("gradation", gradation, above=0)
-    seed = integer("seed", seed)
-    check_network(points, segments, left, right)
+    check_pslg(points, segments, left, right)
     if not (np.any(left) or np.any(right)):
         return points.copy(), np.zeros((0, 3), np.int64), np.zeros(0, np.int64)
-    given, names = _network(points, segments, left, right)
+    begun = begin(points, segments, left, right, edge_length=edge_length, gradation=gradation, size=size, seed=seed)
+    return finish(begun, min_angle=min_angle)
+
+
+def begin(
+    points: Floats,
+    segments: Ints,
+    left: Ints,
+    right: Ints,
+    *,
+    edge_length: float,
+    gradation: float = 0.17,
+    size: Floats | LengthField | None = None,
+    limits: Floats | None = None,
+    seed: int = 0,
+) -> Filling:
+    """Make a first mesh, and let the points slide to where its triangles want them.
+
+    Parameters
+    ----------
+    points, segments, left, right, edge_length
+        As for `fill`.
+    gradation : float
+        By how much the wanted length grows per unit of distance from short segments. Smaller values give better
+        triangles, and more.
+    size : (n,) float64 or callable, optional
+        Edge length wanted at each point; or a function of places (k, 2) that returns lengths (k,), which should itself grow by no more
+        than `gradation`. Only what is below `edge_length` counts.
+    limits : (n,) float64, optional
+        How far each point may slide, parallel to the line between its neighbours; 0 for those that stay. None: all stay.
+    seed : int
+        0 centres the lattice on the points; another number shifts it by chance, for another mesh as good.
+
+    Returns
+    -------
+    Filling
+        Its `wanted` are the places that the points slid to.
+
+    Raises
+    ------
+    PslgError, ParameterError
+        As from `fill`.
+    """
+    edge_length, gradation = finite("edge_length", edge_length, above=0), finite("gradation", gradation, above=0)
+    seed = integer("seed", seed)
+    check_pslg(points, segments, left, right)
+    given, names = _coded(points, segments, left, right)
     sizes = _sizes(given, edge_length, gradation, size)
-    network, at_points, at_middles = given.divided(sizes)
-    lattice = Lattice.over(network.points, edge_length, _shift(seed))
+    pslg, at_points, at_middles = given.divided(sizes)
+    lattice = Lattice.over(pslg.points, edge_length, _shift(seed))
+    strip = lay_strip(pslg, at_points, at_middles, sizes, lattice, MARGINS[0])
     try:
-        # To mend the mesh may take splitting an edge of the depth, which cannot be: then again with less depth, or none.
-        for rings in (2, 8, lattice.rows):
-            laid = band(network, at_points, at_middles, sizes, lattice, rings)
-            mesh = mended(*settled(laid, slide), laid.fence, laid.own, min_angle)
-            if mesh is not None:
+        mesh = relax_strip(strip, limits)
+    except PslgError as error:
+        raise _named(error, pslg) from error
+    return Filling(pslg, sizes, at_points, at_middles, lattice, strip, mesh, names, len(points))
+
+
+def finish(begun: Filling, points: Floats | None = None, *, min_angle: float = 30.0) -> tuple[Floats, Ints, Ints]:
+    """Finish a mesh, with the points given for it put to some places (n, 2) near where it wants them; None: exactly there.
+
+    Parameters
+    ----------
+    begun
+        From `begin`.
+    points
+        At places that differ little from those of before; the segments between them must not cross.
+    min_angle : float
+        Degrees. Where the mesh misses it, points are added. It is reached unless segments meet in sharp corners.
+
+    Returns
+    -------
+    vertices : (v, 2) float64
+        The points, in their order; then all others.
+    triangles : (m, 3) int64
+        Counter-clockwise. Every segment is an edge, or a chain of edges where it was long for the length wanted there.
+    regions : (m,) int64
+        The region of each triangle.
+
+    Raises
+    ------
+    PslgError, ParameterError
+        As from `fill`.
+    """
+    min_angle = finite("min_angle", min_angle, least=0, most=40)
+    first = begun.mesh.vertices[: begun.n_given] if points is None else as_complex(points)
+    strip, relaxed = begun.strip, begun.mesh
+    try:
+        # Refinement may have to split an edge of the core, which cannot be: then again with less of a core, or none.
+        for margin in (*MARGINS[1:], begun.lattice.rows, None):
+            mesh = finish_strip(strip, relaxed, first)
+            refined = refine_locally(mesh.vertices, mesh.triangles, mesh.codes, strip.constraints, strip.n_outline, min_angle)
+            if refined is not None or margin is None:
                 break
-    except NetworkError as error:
-        own = error.segments[error.segments < len(network.segments)]
-        raise NetworkError(str(error), np.unique(network.origin[own])) from error
-    assert mesh is not None, "without depth every edge may be split"
-    vertices, triangles, codes = completed(laid, *mesh)
-    return pairs(vertices), triangles, names[codes]
+            outlines = replace(begun.pslg, points=np.concatenate([first, begun.pslg.points[len(first) :]]))
+            strip = lay_strip(outlines, begun.at_points, begun.at_middles, begun.sizes, begun.lattice, margin)
+            relaxed = relax_strip(strip)
+    except PslgError as error:
+        raise _named(error, begun.pslg) from error
+    assert refined is not None, "without a core every edge may be split"
+    mesh = with_core(strip, RegionMesh(*refined))
+    return as_rows(mesh.vertices), mesh.triangles, begun.names[mesh.codes]
 
 
-def _network(points: Floats, segments: Ints, left: Ints, right: Ints) -> tuple[Network, Ints]:
+def _named(error: PslgError, pslg: Pslg) -> PslgError:
+    """Name the caller's segments in an error about those of a strip."""
+    own = error.segments[error.segments < len(pslg.segments)]
+    return PslgError(str(error), np.unique(pslg.origin[own]))
+
+
+def _coded(points: Floats, segments: Ints, left: Ints, right: Ints) -> tuple[Pslg, Ints]:
     """Give the regions codes near 0, and 0 for region 0; return their names by code, those of negative codes counted from the end."""
     names, codes = np.unique(np.concatenate([[0], left, right]), return_inverse=True)
     zero = int(codes[0])
     left, right = np.split(codes[1:] - zero, 2)
-    network = Network(points[:, 0] + 1j * points[:, 1], segments, left, right, np.arange(len(segments)))
-    return network, np.roll(names, -zero).astype(np.int64)
+    return Pslg(as_complex(points), segments, left, right, np.arange(len(segments))), np.roll(names, -zero).astype(np.int64)
 
 
-def _sizes(network: Network, largest: float, gradation: float, size: Floats | Callable[[Floats], Floats] | None) -> Sizes:
+def _sizes(pslg: Pslg, largest: float, gradation: float, size: Floats | LengthField | None) -> SizeFunction:
     """Shorter edges are wanted near short segments, and where `size` says so."""
     if size is None or callable(size):
-        return Sizes.near(network.middles, network.lengths, largest, gradation, size)
+        return lengths_near(pslg.middles, pslg.lengths, largest, gradation, size)
     wanted = np.asarray(size, np.float64)
-    if wanted.shape != network.points.shape or not (wanted > 0).all():
-        raise ParameterError(f"size: expected a positive length for each of {len(network.points)} points, found shape {wanted.shape}")
-    sources, lengths = np.concatenate([network.middles, network.points]), np.concatenate([network.lengths, wanted])
-    return Sizes.near(sources, lengths, largest, gradation)
+    if wanted.shape != pslg.points.shape or not (wanted > 0).all():
+        raise ParameterError(f"size: expected a positive length for each of {len(pslg.points)} points, found shape {wanted.shape}")
+    sources, lengths = np.concatenate([pslg.middles, pslg.points]), np.concatenate([pslg.lengths, wanted])
+    return lengths_near(sources, lengths, largest, gradation)
 
 
 def _shift(seed: int) -> complex:

@@ -1,8 +1,10 @@
-"""The first layer of points in front of the outlines.
+"""The first layer of points in front of the outlines, as in the advancing-front method.
 
 In: the segments and the wanted edge length at each. Out: one point per side of a segment, the apex of a nearly equilateral triangle
 over it, thinned out where apexes crowd. This layer decides the worst angle of a mesh: a lattice that just ends near the outline
-leaves angles of 26 to 30 degrees which no smoothing lifts; with the layer they are 40 and more.
+leaves angles of 26 to 30 degrees which no smoothing lifts; with the layer they are 40 and more. It is the first front of S. H. Lo,
+A new mesh generation scheme for arbitrary planar domains, Int. J. Numer. Methods Eng. 21, 1985, https://doi.org/10.1002/nme.1620210805;
+a second one gains nothing.
 """
 
 from __future__ import annotations
@@ -10,66 +12,55 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from img2tri.triangles.generate.graded_lattice import pairs
-from img2tri.triangles.generate.hexagonal_lattice import Complex
-from img2tri.triangles.generate.pslg import Network
-from img2tri.types import Bools, Floats, Ints
+from img2tri.arrays import Bools, Floats, Ints, Points, as_rows, independent
+from img2tri.triangles.generate.pslg import Pslg
 
 CROWDED = 0.68  # two points nearer than this times the wanted edge length are one too many
 MIDDLE = 0.6  # the middle of a segment keeps others off by this part of what a point does: an apex may look at it from near
+SPAN = 0.3  # lengths of a class, over its longest; classes begin at halves, and so overlap by a factor of 0.5 / SPAN
 
 
-def apexes(network: Network, wanted: Floats) -> tuple[Complex, Floats]:
+def apexes(pslg: Pslg, wanted: Floats) -> tuple[Points, Floats]:
     """Put an apex over both sides of each segment, where there is a region; return places and wanted edge lengths.
 
     `wanted` are the lengths at the segments. Over a segment of length l the sides of the triangle get (l + wanted) / 2.
     """
-    start, stop = network.ends
-    length = network.lengths
+    start, stop = pslg.ends
+    length = pslg.lengths
     up = 1j * (stop - start) / length * 0.5 * np.sqrt(wanted * (wanted + 2 * length))
-    on_left, on_right = network.left != 0, network.right != 0
-    places = np.concatenate([(network.middles + up)[on_left], (network.middles - up)[on_right]])
+    on_left, on_right = pslg.left != 0, pslg.right != 0
+    places = np.concatenate([(pslg.middles + up)[on_left], (pslg.middles - up)[on_right]])
     return places, np.concatenate([wanted[on_left], wanted[on_right]])
 
 
-def keepers(network: Network, at_points: Floats, at_middles: Floats) -> tuple[Complex, Floats]:
-    """Return places on the network, and the lengths by which others are kept off: the points, and the middles, which keep less."""
-    return np.concatenate([network.points, network.middles]), np.concatenate([at_points, MIDDLE * at_middles])
+def obstacles(pslg: Pslg, at_points: Floats, at_middles: Floats) -> tuple[Points, Floats]:
+    """Return places on the outlines, and the lengths by which others are kept off: the points, and the middles, which keep less."""
+    return np.concatenate([pslg.points, pslg.middles]), np.concatenate([at_points, MIDDLE * at_middles])
 
 
-def spread(points: Complex, wanted: Floats, fixed: int) -> Bools:
-    """Choose which points may stay, so that none of those after the first `fixed` is crowded. Lower numbers win.
+def uncrowded(points: Points, wanted: Floats, fixed: int) -> Bools:
+    """Choose which points (n,) may stay, so that none of those after the first `fixed` is crowded. Lower numbers win.
 
     A point is crowded if another one that stays lies nearer than `CROWDED` times the smaller of their wanted edge lengths.
     """
-    first, second = _neighbours(points, wanted)
-    near = np.abs(points[first] - points[second]) < CROWDED * np.minimum(wanted[first], wanted[second])
-    near &= second >= fixed
-    first, second = first[near], second[near]
-    stays = np.ones(len(points), bool)
-    open_ = np.ones(len(first), bool)
-    # A point falls if it is near a lower one that surely stays: one not near any lower one itself. Then look again.
-    while open_.any():
-        safe = np.ones(len(points), bool)
-        safe[second[open_]] = False
-        falls = second[open_ & safe[first]]
-        stays[falls] = False
-        open_ &= stays[first] & stays[second]
-    return stays
+    lower, higher = _neighbours(points, wanted)
+    near = np.abs(points[lower] - points[higher]) < CROWDED * np.minimum(wanted[lower], wanted[higher])
+    near &= higher >= fixed
+    return independent(lower[near], higher[near], len(points))
 
 
-def _neighbours(points: Complex, wanted: Floats) -> tuple[Ints, Ints]:
+def _neighbours(points: Points, wanted: Floats) -> tuple[Ints, Ints]:
     """All pairs of points that may be crowded, lower number first; some may come twice.
 
     Searching within the largest length would find far too many pairs where lengths are small. So lengths go in classes which
-    overlap: those of two neighbours differ by less than the overlap.
+    overlap: the wanted lengths of two neighbours differ by less than the overlap.
     """
     found = [np.zeros((0, 2), np.int64)]
-    top = float(wanted.max(initial=0.0))
-    while top > 0.4 * wanted.min(initial=np.inf):
-        members = np.flatnonzero((wanted <= top) & (wanted > 0.3 * top))
-        tree = cKDTree(pairs(points[members]))
-        found.append(np.sort(members[tree.query_pairs(CROWDED * top, output_type="ndarray")], axis=1))
-        top /= 2
-    first, second = np.concatenate(found).T
-    return first, second
+    top, least = float(wanted.max(initial=0.0)), float(wanted.min(initial=np.inf))
+    halvings = max(0, int(np.ceil(np.log2(top / (0.4 * least))))) if top > 0 else 0
+    for longest in top / 2.0 ** np.arange(halvings):
+        members = np.flatnonzero((wanted <= longest) & (wanted > SPAN * longest))
+        tree = cKDTree(as_rows(points[members]))
+        found.append(np.sort(members[tree.query_pairs(CROWDED * longest, output_type="ndarray")], axis=1))
+    lower, higher = np.concatenate(found).T
+    return lower, higher

@@ -1,6 +1,6 @@
-"""The net under the mesh: where an angle is too small, the triangles around it are refined by Ruppert's method.
+"""Local Ruppert refinement, the safety net: where an angle is still too small, the triangles around it are refined.
 
-In: a mesh and the network it was made of. Out: the mesh with its bad places replaced. Only a *patch*, some rings of triangles around
+In: a mesh and the constraints it was made of. Out: the mesh with its bad places replaced. Only a *patch*, some rings of triangles around
 the bad ones, is triangulated anew, with its rim and the segments in it as constraints. Refinement may split a segment that has
 nothing but the patch on its sides. If it splits another edge of the rim, the neighbours outside do not fit: then the patch is made
 larger there.
@@ -10,92 +10,77 @@ from __future__ import annotations
 
 import numpy as np
 
-from img2tri.triangles.generate.constrained_delaunay import refine
-from img2tri.triangles.generate.graded_lattice import pairs
-from img2tri.triangles.generate.hexagonal_lattice import Complex
-from img2tri.triangles.generate.pslg import Network
-from img2tri.triangles.generate.quality_smoothing import SMOOTH, narrow, relaxed, touched
-from img2tri.types import Bools, Ints
+from img2tri.arrays import Bools, Ints, Points, as_complex, as_rows, unique_edges
+from img2tri.triangles.angles import narrower
+from img2tri.triangles.generate.constrained_delaunay import ruppert
+from img2tri.triangles.generate.pslg import Pslg
+from img2tri.triangles.generate.quality_smoothing import patch_around, smooth, touching
 
-RINGS = (3, 3, 6, 12, 24, 1_000_000)  # how far patches reach around bad triangles, then around edges of the rim that were split
-SHORTEST = 0.05  # no edge becomes shorter than about this times the shortest segment in the patch
+PATCH_RINGS = (3, 3, 6, 12, 24, 1_000_000)  # how far patches reach around bad triangles, then around edges of the rim that were split
+SHORTEST_EDGE = 0.05  # no edge becomes shorter than about this times the shortest segment in the patch
 
 
-def mended(
-    vertices: Complex, triangles: Ints, codes: Ints, network: Network, own: int, min_angle: float
-) -> tuple[Complex, Ints, Ints] | None:
-    """Refine the mesh of a network where angles are smaller than `min_angle`; its vertices stay, others are added after them.
+def refine_locally(
+    vertices: Points, triangles: Ints, codes: Ints, constraints: Pslg, n_outline: int, min_angle: float
+) -> tuple[Points, Ints, Ints] | None:
+    """Refine a mesh where angles are smaller than `min_angle`; its vertices stay, others are added after them.
 
-    Only the first `own` segments of the network may be split. None if that is not enough.
+    Only the first `n_outline` segments of the constraints may be split. None if that is not enough.
     """
-    bad = narrow(vertices, triangles, min_angle)
+    bad = narrower(vertices, triangles, min_angle)
     if not bad.any():
         return vertices, triangles, codes
     patch, cause = np.zeros(len(triangles), bool), bad
-    for rings in RINGS:
-        patch = patch | _grown(cause, triangles, rings)
+    for rings in PATCH_RINGS:
+        patch = patch | patch_around(cause, triangles, len(vertices), rings)[0]
         inside, local = np.unique(triangles[patch], return_inverse=True)
-        walls, splittable = _walls(vertices[inside], inside, local.reshape(-1, 3), codes[patch], network, own)
-        net = refine(pairs(walls.points), walls.segments, walls.left, walls.right, min_angle, SHORTEST * walls.lengths.min())
-        torn = (np.bincount(net.origin) > 1) & ~splittable
-        if not torn.any():
+        rim, may_split = _patch_constraints(vertices[inside], inside, local.reshape(-1, 3), codes[patch], constraints, n_outline)
+        made = ruppert(as_rows(rim.points), rim.segments, rim.left, rim.right, min_angle, SHORTEST_EDGE * rim.lengths.min())
+        split = (np.bincount(made.origin) > 1) & ~may_split
+        if not split.any():
             break
         if patch.all():
             return None
         ends = np.zeros(len(vertices), bool)
-        ends[inside[walls.segments[torn]]] = True
-        cause = touched(triangles, ends)
-    places = net.vertices[:, 0] + 1j * net.vertices[:, 1]
+        ends[inside[rim.segments[split]]] = True
+        cause = touching(triangles, ends)
+    places = as_complex(made.vertices)
     free = np.ones(len(places), bool)
-    free[net.segments] = False
-    places = relaxed(places, net.triangles, free, SMOOTH)
+    free[made.segments] = False
+    places = smooth(places, made.triangles, free)
     numbers = np.concatenate([inside, len(vertices) + np.arange(len(places) - len(inside))])
     all_places = np.concatenate([vertices, places[len(inside) :]])
     all_places[inside] = places[: len(inside)]
     return (
         all_places,
-        np.concatenate([triangles[~patch], numbers[net.triangles]]),
-        np.concatenate([codes[~patch], net.regions]),
+        np.concatenate([triangles[~patch], numbers[made.triangles]]),
+        np.concatenate([codes[~patch], made.regions]),
     )
 
 
-def _grown(chosen: Bools, triangles: Ints, rings: int) -> Bools:
-    """Add the triangles that share a vertex with those chosen, and so on."""
-    for _ in range(rings):
-        zone = np.zeros(triangles.max() + 1, bool)
-        zone[triangles[chosen]] = True
-        grown = touched(triangles, zone)
-        if np.array_equal(grown, chosen):
-            break
-        chosen = grown
-    return chosen
-
-
-def _walls(points: Complex, inside: Ints, triangles: Ints, codes: Ints, network: Network, own: int) -> tuple[Network, Bools]:
+def _patch_constraints(points: Points, inside: Ints, triangles: Ints, codes: Ints, constraints: Pslg, n_outline: int) -> tuple[Pslg, Bools]:
     """Find the rim of a patch and the segments in it, in numbers of the patch, and whether each may be split."""
     n = len(inside)
-    start, stop = triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
-    # An edge is known by its ends, lower first. The triangle that has it in this direction lies on its left.
-    keys, edge = np.unique(np.minimum(start, stop) * n + np.maximum(start, stop), return_inverse=True)
-    upward, code = start < stop, np.repeat(codes, 3)
-    left, right = np.zeros(len(keys), np.int64), np.zeros(len(keys), np.int64)
+    edges, sides = unique_edges(triangles)
+    edge, code = sides.ravel(), np.repeat(codes, 3)
+    # The triangle that has an edge in its direction, from the lower to the higher number, lies on its left.
+    upward = (triangles < np.roll(triangles, -1, axis=1)).ravel()
+    left, right = np.zeros(len(edges), np.int64), np.zeros(len(edges), np.int64)
     left[edge[upward]], right[edge[~upward]] = code[upward], code[~upward]
     found = np.bincount(edge)
-    # Segments of the network with both ends in the patch, and the edges they are.
-    place = np.full(len(network.points), -1)
-    known = np.flatnonzero(inside < len(network.points))
+    # Segments with both ends in the patch, and the edges they are.
+    place = np.full(len(constraints.points), -1)
+    known = np.flatnonzero(inside < len(constraints.points))
     place[inside[known]] = known
-    ends = np.sort(place[network.segments], axis=1)
-    wanted = ends[:, 0] * n + ends[:, 1]
+    ends = np.sort(place[constraints.segments], axis=1)
+    keys, wanted = edges @ (n, 1), ends @ (n, 1)
     at = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
     segment = np.flatnonzero((ends[:, 0] >= 0) & (keys[at] == wanted))
     at = at[segment]
     # A segment may be split if all its triangles are in the patch.
-    sides = (network.left[segment] != 0).astype(np.int64) + (network.right[segment] != 0)
-    wall: Bools = found == 1
-    splittable = np.zeros(len(keys), bool)
-    wall[at] = True
-    splittable[at] = (found[at] == sides) & (segment < own)
-    lower, upper = np.divmod(keys[wall], n)
-    origin = np.full(len(lower), -1)
-    return Network(points, np.stack([lower, upper], axis=1), left[wall], right[wall], origin), splittable[wall]
+    meshed = (constraints.left[segment] != 0).astype(np.int64) + (constraints.right[segment] != 0)
+    kept: Bools = found == 1
+    may_split = np.zeros(len(keys), bool)
+    kept[at] = True
+    may_split[at] = (found[at] == meshed) & (segment < n_outline)
+    return Pslg(points, edges[kept], left[kept], right[kept], np.full(int(kept.sum()), -1)), may_split[kept]

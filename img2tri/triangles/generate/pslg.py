@@ -1,4 +1,8 @@
-"""The network of outlines, and its segments divided to the wanted edge length."""
+"""The planar straight-line graph (PSLG) of the outlines, and its segments divided to the wanted edge length.
+
+In: points, segments that meet in their end points only, the region on either side of each. Out: the same with segments divided, so that
+none is much longer than the size function asks. The term is that of F. P. Preparata and M. I. Shamos, Computational Geometry, 1985.
+"""
 
 from __future__ import annotations
 
@@ -6,16 +10,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from img2tri.triangles.generate.graded_lattice import Sizes
-from img2tri.triangles.generate.hexagonal_lattice import Complex
-from img2tri.triangles.generate.quality_smoothing import Rails
-from img2tri.types import Floats, Ints
+from img2tri.arrays import Floats, Ints, Points, runs
+from img2tri.triangles.generate.quality_smoothing import SlideLines
+from img2tri.triangles.generate.size_function import SizeFunction
 
 ROUND_UP = 0.4  # a segment of n + this many wanted lengths or more is divided into n + 1 parts
 
 
 @dataclass(frozen=True, eq=False)
-class Network:
+class Pslg:
     """Points joined by segments, with the regions on both sides.
 
     Attributes
@@ -30,19 +33,19 @@ class Network:
         (s,) int64, which of the segments given by the caller each is, or is a part of; -1 for none.
     """
 
-    points: Complex
+    points: Points
     segments: Ints
     left: Ints
     right: Ints
     origin: Ints
 
     @property
-    def ends(self) -> tuple[Complex, Complex]:
+    def ends(self) -> tuple[Points, Points]:
         """First and last point of each segment."""
         return self.points[self.segments[:, 0]], self.points[self.segments[:, 1]]
 
     @property
-    def middles(self) -> Complex:
+    def middles(self) -> Points:
         """Middle of each segment."""
         start, stop = self.ends
         return (start + stop) / 2
@@ -53,7 +56,7 @@ class Network:
         start, stop = self.ends
         return np.abs(stop - start)
 
-    def divided(self, sizes: Sizes) -> tuple[Network, Floats, Floats]:
+    def divided(self, sizes: SizeFunction) -> tuple[Pslg, Floats, Floats]:
         """Divide segments that are too long for the wanted length, with parts that grow as it does. The points stay the first ones.
 
         Also return the wanted length at the points, and at the middles of the segments.
@@ -81,14 +84,14 @@ class Network:
         points = start[of[new]] + (stop - start)[of[new]] * np.where(head, way, 1 - way)
         segments = self.segments[of]
         segments[new, 0] = segments[new - 1, 1] = len(self.points) + np.arange(len(new))
-        network = Network(np.concatenate([self.points, points]), segments, self.left[of], self.right[of], self.origin[of])
+        network = Pslg(np.concatenate([self.points, points]), segments, self.left[of], self.right[of], self.origin[of])
         at_middles = at_middles[of]
         changed = np.flatnonzero(parts[of] > 1)
         at_middles[changed] = sizes.at(network.middles[changed])
         return network, np.concatenate([at_points, sizes.at(points)]), at_middles
 
-    def rails(self, room: Floats) -> Rails:
-        """Let the first points slide, by so much, parallel to the line between their neighbours; but not where segments were divided."""
+    def slide_lines(self, limits: Floats) -> SlideLines:
+        """Let the first points slide parallel to the line between their neighbours, within limits; but not where segments were divided."""
         start, stop = self.segments.T
         before, after = np.zeros((2, len(self.points)), np.complex128)
         before[stop], after[start] = self.points[start], self.points[stop]
@@ -96,26 +99,20 @@ class Network:
         divided = own & (np.bincount(self.origin[own])[self.origin] > 1)
         stays = np.zeros(len(self.points), bool)
         stays[self.segments[divided]] = True
-        at = np.flatnonzero((room > 0) & ~stays[: len(room)])
+        at = np.flatnonzero((limits > 0) & ~stays[: len(limits)])
         along = after[at] - before[at]
-        return Rails(at, along / np.abs(along), self.points[at], room[at])
+        return SlideLines(at, along / np.abs(along), self.points[at], limits[at])
 
-    def joined(self, points: Complex, segments: Ints, right: Ints) -> Network:
+    def joined(self, points: Points, segments: Ints, right: Ints) -> Pslg:
         """Add points, and segments between these, with nothing meshed on their left."""
         none = np.zeros(len(segments), np.int64)
-        return Network(
+        return Pslg(
             points=np.concatenate([self.points, points]),
             segments=np.concatenate([self.segments, segments + len(self.points)]),
             left=np.concatenate([self.left, none]),
             right=np.concatenate([self.right, right]),
             origin=np.concatenate([self.origin, none - 1]),
         )
-
-
-def runs(counts: Ints) -> tuple[Ints, Ints]:
-    """Return, for counts 2, 1, 3, the number of the run 0 0 1 2 2 2 and the place in the run 0 1 0 0 1 2."""
-    of = np.repeat(np.arange(len(counts)), counts)
-    return of, np.arange(len(of)) - np.repeat(np.cumsum(counts) - counts, counts)
 
 
 def _log_mean(a: Floats, b: Floats) -> Floats:

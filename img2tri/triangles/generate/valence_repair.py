@@ -1,7 +1,8 @@
-r"""Adding and removing points where a vertex has too many or too few triangles.
+r"""Valence repair: points are added and removed where a vertex has too many or too few triangles.
 
-No smoothing makes good triangles around an inner vertex that has 4 of them (angles about 90 degrees) or 8 (about 45). Here the
-former are taken away and the latter split in two; triangulated anew, this leaves vertices of 5, 6 and 7 triangles::
+In: a mesh and which of its vertices are free. Out: points to add, and which vertices stay. No smoothing makes good triangles around an
+inner vertex of valence 4 (angles about 90 degrees) or 8 (about 45). Here the former are taken away and the latter split in two;
+triangulated anew, this leaves vertices of valence 5, 6 and 7::
 
       o---o---o             o---o---o
       |\  |  /|             |  / \  |
@@ -10,20 +11,22 @@ former are taken away and the latter split in two; triangulated anew, this leave
       | / | \ |             | \   / |      that best bear one more triangle each
       |/  |  \|             |  \ /  |
       o---o---o             o---o---o
+
+Valences are made even by flips, collapses and splits since W. H. Frey and D. A. Field, Mesh relaxation: a new technique for improving
+triangulations, Int. J. Numer. Methods Eng. 31, 1991, https://doi.org/10.1002/nme.1620310607; flips are left to the triangulation.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from img2tri.triangles.generate.hexagonal_lattice import Complex
-from img2tri.types import Bools, Floats, Ints
+from img2tri.arrays import Bools, Floats, Ints, Points, runs
 
 TOO_MANY = 1.5  # triangles more, or less, than there should be
 
 
-def surplus(vertices: Complex, triangles: Ints) -> Floats:
-    """Return how many triangles too many each vertex has for its angle, if 60 degrees are right for one.
+def excess(vertices: Points, triangles: Ints) -> Floats:
+    """Return how many triangles too many each vertex (n,) has for its angle, if 60 degrees are right for one.
 
     This serves vertices on outlines as well: there the triangles fill less than a full turn.
     """
@@ -34,56 +37,54 @@ def surplus(vertices: Complex, triangles: Ints) -> Floats:
     return extra
 
 
-def repaired(vertices: Complex, triangles: Ints, free: Bools) -> tuple[Complex, Bools]:
+def repair_valences(vertices: Points, triangles: Ints, free: Bools) -> tuple[Points, Bools]:
     """Return points to add, and which vertices stay; of the free ones those go that are in no triangle, in 4 or less, in 8 or more."""
     stays = ~free
     stays[triangles] = True
-    extra = surplus(vertices, triangles)
-    centre, ring, start = _rings(vertices, triangles, free & (np.abs(extra) > TOO_MANY))
+    extra = excess(vertices, triangles)
+    centre, neighbour, start = _neighbourhoods(vertices, triangles, free & (np.abs(extra) > TOO_MANY))
     stays[centre] = False
     crowded = extra[centre] > 0
-    start = start[crowded[start]]  # the rings to split, by their first entries
-    return _split(vertices, extra, centre, ring, start), stays
+    return _split(vertices, extra, centre, neighbour, start[crowded[start]]), stays
 
 
-def _rings(vertices: Complex, triangles: Ints, chosen: Bools) -> tuple[Ints, Ints, Ints]:
+def _neighbourhoods(vertices: Points, triangles: Ints, chosen: Bools) -> tuple[Ints, Ints, Ints]:
     """Return the neighbours of chosen vertices, counter-clockwise: entries (centre, neighbour), and the first entry of each centre.
 
-    Of vertices whose rings have a vertex in common only that of lowest number is kept, so that each may be changed without regard to
-    others.
+    Of vertices that have a neighbour in common, or are neighbours, only that of lowest number is kept, so that each may be changed
+    without regard to others.
     """
     triangle, corner = np.nonzero(chosen[triangles])
-    centre, ring = triangles[triangle, corner], triangles[triangle, (corner + 1) % 3]
-    order = np.lexsort((np.angle(vertices[ring] - vertices[centre]), centre))
-    centre, ring = centre[order], ring[order]
+    centre, neighbour = triangles[triangle, corner], triangles[triangle, (corner + 1) % 3]
+    order = np.lexsort((np.angle(vertices[neighbour] - vertices[centre]), centre))
+    centre, neighbour = centre[order], neighbour[order]
     owner = np.full(len(vertices), len(vertices))
-    np.minimum.at(owner, ring, centre)
+    np.minimum.at(owner, neighbour, centre)
     np.minimum.at(owner, centre, centre)
     disputed = np.zeros(len(vertices), bool)
-    disputed[centre[(owner[ring] != centre) | (owner[centre] != centre)]] = True
+    disputed[centre[(owner[neighbour] != centre) | (owner[centre] != centre)]] = True
     alone = ~disputed[centre]
-    centre, ring = centre[alone], ring[alone]
-    return centre, ring, np.flatnonzero(np.diff(centre, prepend=-1))
+    centre, neighbour = centre[alone], neighbour[alone]
+    return centre, neighbour, np.flatnonzero(np.diff(centre, prepend=-1))
 
 
-def _split(vertices: Complex, extra: Floats, centre: Ints, ring: Ints, start: Ints) -> Complex:
-    """Return two points for each ring that begins at `start`: halfway from the centre to the means of the two halves of the ring."""
+def _split(vertices: Points, extra: Floats, centre: Ints, neighbour: Ints, start: Ints) -> Points:
+    """Return two points for each centre whose entries begin at `start`: halfway from it to the means of two halves of its neighbours."""
     count = np.searchsorted(centre, centre[start], side="right") - start
-    of = np.repeat(np.arange(len(start)), count)
-    place = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
+    of, place = runs(count)
     half = count // 2
-    opposite = ring[start[of] + (place + half[of]) % count[of]]
-    neighbour = ring[start[of] + place]
-    # The cheapest pair of each ring comes first in this order; then count the places from there.
-    order = np.lexsort((extra[neighbour] + extra[opposite], of))
+    opposite = neighbour[start[of] + (place + half[of]) % count[of]]
+    around = neighbour[start[of] + place]
+    # The cheapest pair of each centre comes first in this order; then count the places from there.
+    order = np.lexsort((extra[around] + extra[opposite], of))
     begin = place[order][np.flatnonzero(np.diff(of, prepend=-1))]
     place = (place - begin[of]) % count[of]
     points = []
     for side in (place <= half[of], (place >= half[of]) | (place == 0)):
-        mean = _sums(of[side], vertices[neighbour[side]]) / np.bincount(of[side])
+        mean = _sums(of[side], vertices[around[side]]) / np.bincount(of[side])
         points.append((mean + vertices[centre[start]]) / 2)
     return np.concatenate(points)
 
 
-def _sums(of: Ints, values: Complex) -> Complex:
+def _sums(of: Ints, values: Points) -> Points:
     return np.bincount(of, values.real) + 1j * np.bincount(of, values.imag)

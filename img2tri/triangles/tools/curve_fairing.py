@@ -23,9 +23,9 @@ import math
 
 import numpy as np
 
+from img2tri.arrays import Bools, Floats, Ints, as_complex, cross, runs
 from img2tri.errors import MeshError, ParameterError, finite, integer
 from img2tri.triangles.tools.topology import directed_curves
-from img2tri.types import Bools, Floats, Ints
 
 Bounds = tuple[float, float, float, float]
 
@@ -130,8 +130,8 @@ def _limits(points: Floats, edges: Ints, reach: float) -> Floats:
     lengths = np.linalg.norm(b - a, axis=1)
     apart = max(2 * reach, float(lengths.mean()))
     number = np.ceil(lengths / apart).astype(np.int64)
-    owner = np.repeat(np.arange(len(edges)), number)
-    place = (np.arange(len(owner)) - np.repeat(np.cumsum(number) - number, number) + 0.5) / number[owner]
+    owner, place = runs(number)
+    place = (place + 0.5) / number[owner]
     samples = a[owner] + place[:, None] * (b - a)[owner]
     near = cKDTree(points).sparse_distance_matrix(cKDTree(samples), 2 * reach + apart / 2, output_type="ndarray")
     pairs = np.unique(near["i"] * len(edges) + owner[near["j"]])
@@ -206,7 +206,9 @@ class _Curves:
             before  0 ------> 1
         """
         i, j = self.edges.T
-        swept = np.bincount(self.owner, _cross(after[j] - before[i], after[i] - before[j]) / 2, minlength=len(before))
+        swept = np.bincount(
+            self.owner, cross(as_complex(after[j] - before[i]), as_complex(after[i] - before[j])) / 2, minlength=len(before)
+        )
         # The gradient of the area to the left at a vertex is half the edge around it, turned by 90 degrees; halfway, the area is
         # linear in the shift of a circle.
         middle = (before + after) / 2
@@ -218,8 +220,3 @@ class _Curves:
         reach = np.bincount(self.curve, size, minlength=len(before))
         shift = np.divide(-swept, reach, out=np.zeros_like(reach), where=reach > 0)[self.curve]
         return after + normal * np.divide(shift, size, out=np.zeros_like(size), where=size > 0)[:, None]
-
-
-def _cross(a: Floats, b: Floats) -> Floats:
-    product: Floats = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-    return product

@@ -9,31 +9,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from img2tri.types import Floats, Ints
+from img2tri.arrays import Floats, Ints, as_complex
+from img2tri.errors import bounded
+from img2tri.triangles.angles import smallest_tangents
 
-SLACK = 1e-12
-"""Part of the sine that counts as rounding: else a mesh merely shifted would be taken for spoiled."""
-
-
-def sines(vertices: Floats, triangles: Ints) -> Floats:
-    """Return the sine of the smallest angle (m,) of each triangle, negative where it is turned over, 0 where it is flat.
-
-    Cheaper than the angle and as good to compare by, the smallest angle being at most 60 degrees.
-
-    Examples
-    --------
-    >>> sines(np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]), np.array([[0, 1, 2], [0, 2, 1]])).round(3)
-    array([ 0.707, -0.707])
-    """
-    x, y = vertices[:, 0][triangles], vertices[:, 1][triangles]
-    u, v = x[:, [1, 2, 0]] - x, y[:, [1, 2, 0]] - y
-    squares = u * u + v * v
-    doubled = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
-    # Twice the area over the product of the two longest edges.
-    a, b, c = squares.T
-    largest = np.maximum(np.maximum(a * b, b * c), c * a)
-    result: Floats = np.divide(doubled, np.sqrt(largest), out=np.zeros(len(doubled)), where=largest > 0)
-    return result
+TANGENT_ROUNDING = 1e-12
+"""Part of the tangent that counts as rounding: else a mesh merely shifted would be taken for spoiled."""
 
 
 def put_back(before: Floats, after: Floats, triangles: Ints) -> Floats:
@@ -61,14 +42,16 @@ def put_back(before: Floats, after: Floats, triangles: Ints) -> Floats:
     >>> put_back(before, after, np.array([[0, 1, 2]]))[2].tolist()
     [0.0, 1.0]
     """
-    floor = sines(before, triangles)
-    floor = np.minimum(floor, floor[floor > 0].min(initial=1.0))
-    floor -= SLACK * np.abs(floor)
+    floor = smallest_tangents(as_complex(before), triangles)
+    floor = np.minimum(floor, floor[floor > 0].min(initial=2.0))
+    floor -= TANGENT_ROUNDING * np.abs(floor)
     result = after.copy()
     moved = (before != after).any(axis=1)
     look_at = np.flatnonzero(moved[triangles].any(axis=1))
-    while len(look_at):
-        fell = look_at[sines(result, triangles[look_at]) < floor[look_at]]
+    for _ in bounded("inversion guard", len(before) + 1):
+        if not len(look_at):
+            break
+        fell = look_at[smallest_tangents(as_complex(result), triangles[look_at]) < floor[look_at]]
         back = np.zeros(len(moved), bool)
         back[triangles[fell]] = True
         back &= moved

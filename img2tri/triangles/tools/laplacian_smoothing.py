@@ -20,13 +20,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.sparse import diags_array
 
+from img2tri.arrays import Bools, Floats, Ints, as_complex
 from img2tri.errors import ParameterError, choice, integer
+from img2tri.triangles.angles import smallest_tangents
 from img2tri.triangles.tools.cotangent_laplacian import carry, laplacian, smooth_field
 from img2tri.triangles.tools.curve_fairing import Bounds, fair_curves
-from img2tri.triangles.tools.inversion_guard import put_back, sines
+from img2tri.triangles.tools.inversion_guard import put_back
 from img2tri.triangles.tools.mesh_checks import check_mesh, check_regions, check_selection
 from img2tri.triangles.tools.topology import adjacency, curve_vertices
-from img2tri.types import Bools, Floats, Ints
 
 __all__ = ["carry", "cotangent", "smooth_field", "uniform"]
 
@@ -178,7 +179,7 @@ def _relaxed(vertices: Floats, triangles: Ints, passes: int, regions: Ints | Non
     L = laplacian(vertices, triangles)
     diagonal = L.diagonal()
     free = ~curve_vertices(triangles, len(vertices), regions) & (diagonal > 0)
-    free[triangles[sines(vertices, triangles) < 1e-4]] = False
+    free[triangles[smallest_tangents(as_complex(vertices), triangles) < 1e-4]] = False
     rows = diags_array(DAMPING / diagonal[free]) @ L.tocsr()[free]
     # Differences from the middle: far from the origin L x would be a small difference of large numbers.
     middle = vertices.mean(axis=0)

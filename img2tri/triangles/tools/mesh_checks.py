@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from img2tri.arrays import Floats, Ints
 from img2tri.errors import MeshError
-from img2tri.types import Floats, Ints
 
 
 def check_mesh(vertices: ArrayLike, triangles: ArrayLike) -> tuple[Floats, Ints]:

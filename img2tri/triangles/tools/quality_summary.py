@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from img2tri.arrays import Floats, Ints
 from img2tri.errors import choice, integer
 from img2tri.triangles.tools.mesh_checks import check_mesh
 from img2tri.triangles.tools.triangle_metrics import METRICS, Geometry
-from img2tri.types import Floats, Ints
 
 DEFAULT = ("q", "min_angle", "max_angle", "radius_ratio", "area", "shortest_edge", "longest_edge")
 """The metrics measured when none are named."""

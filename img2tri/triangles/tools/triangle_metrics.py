@@ -22,9 +22,9 @@ from functools import cached_property
 import igl
 import numpy as np
 
-from img2tri.types import Floats, Ints
+from img2tri.arrays import Floats, Ints
 
-LARGEST = 1e30
+UNBOUNDED = 1e30
 """What Verdict returns in place of infinity: means stay finite, and JSON has a way to write it."""
 
 
@@ -112,11 +112,11 @@ class Metric:
     function: Callable[[Geometry], Floats]
 
 
-def _over(numerator: Floats, denominator: Floats, at_zero: float = LARGEST) -> Floats:
-    """Divide, with `at_zero` where the denominator is zero and nothing above `LARGEST`."""
+def _over(numerator: Floats, denominator: Floats, at_zero: float = UNBOUNDED) -> Floats:
+    """Divide, with `at_zero` where the denominator is zero and nothing above `UNBOUNDED`."""
     with np.errstate(over="ignore"):
         result = np.divide(numerator, denominator, out=np.full(len(numerator), at_zero), where=denominator > 0)
-    capped: Floats = np.minimum(result, LARGEST)
+    capped: Floats = np.minimum(result, UNBOUNDED)
     return capped
 
 

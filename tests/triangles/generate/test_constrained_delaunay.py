@@ -8,7 +8,7 @@ import pytest
 from networks import area_of_ring, network, ring
 from scipy.spatial import Delaunay
 
-from img2tri.triangles.generate.constrained_delaunay import NetworkError, refine, triangulate
+from img2tri.triangles.generate.constrained_delaunay import PslgError, ruppert, triangulate
 
 NESTED = network((ring(40, 10), 5, 0), (ring(30, 7), 0, 5), (ring(20, 4), -3, 0), (ring(12, 2), 9, -3))
 
@@ -57,19 +57,19 @@ def test_a_segment_on_the_wrong_side_is_found():
     points, segments, left, right = NESTED
     left = left.copy()
     left[45] = 6
-    with pytest.raises(NetworkError, match="one region on each face") as caught:
+    with pytest.raises(PslgError, match="one region on each face") as caught:
         triangulate(points, segments, left, right)
     assert set(caught.value.segments) & set(range(40, 70))
 
 
 def test_an_outline_outside_of_its_region_is_found():
     points, segments, left, right = network((ring(20, 5), 1, 0), (ring(8, 1, (9, 0)), 0, 1))
-    with pytest.raises(NetworkError, match="disagree"):
+    with pytest.raises(PslgError, match="disagree"):
         triangulate(points, segments, left, right)
 
 
 def test_crossing_segments():
-    with pytest.raises(NetworkError, match="planar"):
+    with pytest.raises(PslgError, match="planar"):
         triangulate(*network((ring(20, 5), 1, 0), (ring(20, 5, (3, 0)), 1, 0)))
 
 
@@ -87,36 +87,36 @@ def test_crossing_segments():
 )
 def test_what_is_no_network_is_refused(change, message):
     points, segments = change(*NESTED[:2])
-    with pytest.raises(NetworkError, match=message):
+    with pytest.raises(PslgError, match=message):
         triangulate(points, segments, *NESTED[2:])
 
 
 def test_a_point_on_a_segment():
     points = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1], [0.5, 0]])
     outline = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
-    with pytest.raises(NetworkError, match="no point on them"):
+    with pytest.raises(PslgError, match="no point on them"):
         triangulate(points, outline, np.ones(4, int), np.zeros(4, int))
 
 
 def test_refined_triangles_have_the_angle_and_the_regions():
-    net = refine(*NESTED, 30.0, 1e-3)
+    net = ruppert(*NESTED, 30.0, 1e-3)
     assert oracles.angles(net.vertices, net.triangles).min() >= 30 - 1e-9
     assert region_areas(net.vertices, net.triangles, net.regions) == pytest.approx(expected_areas(), rel=1e-9)
     assert (net.vertices[: len(NESTED[0])] == NESTED[0]).all()
 
 
 def test_the_least_angle_asked_for_changes_the_triangles():
-    assert len(refine(*NESTED, 30.0, 1e-3).triangles) > len(refine(*NESTED, 20.0, 1e-3).triangles)
+    assert len(ruppert(*NESTED, 30.0, 1e-3).triangles) > len(ruppert(*NESTED, 20.0, 1e-3).triangles)
 
 
 def test_the_least_edge_stops_refinement():
     thin = network((np.array([[0.0, 0], [10, 0], [10, 0.1], [0, 1.0]]), 1, 0))
-    assert len(refine(*thin, 30.0, 1e-3).triangles) > len(refine(*thin, 30.0, 2.0).triangles)
+    assert len(ruppert(*thin, 30.0, 1e-3).triangles) > len(ruppert(*thin, 30.0, 2.0).triangles)
 
 
 def test_pieces_of_split_segments_make_up_the_segment():
     points, segments, left, right = network((ring(60, 10), 1, 0), (ring(60, 8.8, (1, 0)), 0, 1))
-    net = refine(points, segments, left, right, 30.0, 1e-3)
+    net = ruppert(points, segments, left, right, 30.0, 1e-3)
     assert len(net.segments) > len(segments)
     along = net.vertices[net.segments[:, 1]] - net.vertices[net.segments[:, 0]]
     whole = points[segments[:, 1]] - points[segments[:, 0]]

@@ -13,10 +13,11 @@ from networks import NETWORKS, RING, area_of_ring, network, ring, wave
 
 from img2tri.errors import ParameterError
 from img2tri.triangles.generate import constrained_delaunay as delaunay
-from img2tri.triangles.generate.filling import fill
-from img2tri.triangles.generate.graded_lattice import Sizes
-from img2tri.triangles.generate.pslg import Network
-from img2tri.triangles.generate.strip import Slide
+from img2tri.triangles.generate import filling
+from img2tri.triangles.generate.filling import begin, fill, finish
+from img2tri.triangles.generate.graded_lattice import lengths_near
+from img2tri.triangles.generate.pslg import Pslg
+from img2tri.triangles.generate.size_function import SizeFunction
 
 
 def enclosed(points, segments, left, right):
@@ -80,8 +81,8 @@ def test_long_segments_are_divided():
 
 
 def test_parts_of_a_segment_grow_with_the_wanted_length():
-    line = Network(np.array([0, 100.0]) + 0j, np.array([[0, 1]]), np.array([1]), np.array([0]), np.array([0]))
-    sizes = Sizes(50.0, 0.3, np.array([0j]), np.array([1.0]))
+    line = Pslg(np.array([0, 100.0]) + 0j, np.array([[0, 1]]), np.array([1]), np.array([0]), np.array([0]))
+    sizes = SizeFunction(50.0, 0.3, np.array([0j]), np.array([1.0]))
     divided, at_points, at_middles = line.divided(sizes)
     places = np.sort(divided.points.real)
     assert divided.points[:2] == pytest.approx(line.points)
@@ -95,7 +96,7 @@ def test_parts_of_a_segment_grow_with_the_wanted_length():
 def test_the_wanted_length_grows_from_its_sources():
     sources, lengths = np.array([0, 3 + 1j, 20j]), np.array([1.0, 0.2, 2.0])
     places = np.random.default_rng(1).uniform(-30, 30, 200) + 1j * np.random.default_rng(2).uniform(-30, 30, 200)
-    found = Sizes(6.0, 0.3, sources, lengths).at(places)
+    found = SizeFunction(6.0, 0.3, sources, lengths).at(places)
     exact = np.minimum(6, (lengths + 0.3 * np.abs(places[:, None] - sources)).min(axis=1))
     assert found == pytest.approx(exact)
 
@@ -109,7 +110,7 @@ def test_edges_are_as_long_as_wanted(name, gradation):
     edges, _ = oracles.edge_counts(triangles)
     start, stop = given[0][given[1][:, 0]], given[0][given[1][:, 1]]
     middles, lengths = (start + stop) / 2, np.linalg.norm(stop - start, axis=1)
-    sizes = Sizes.near(middles[:, 0] + 1j * middles[:, 1], lengths, edge_length, gradation)
+    sizes = lengths_near(middles[:, 0] + 1j * middles[:, 1], lengths, edge_length, gradation)
     ratio = np.abs(z[edges[:, 0]] - z[edges[:, 1]]) / sizes.at(z[edges].mean(axis=1))
     assert 0.9 < np.median(ratio) < 1.1
     assert ((ratio > 0.6) & (ratio < 1.5)).mean() > 0.95
@@ -259,7 +260,7 @@ def test_errors_name_the_segments_that_were_given():
     segments = np.concatenate([segments, segments + 4])
     left, right = np.concatenate([left, left]), np.concatenate([right, right])
     left[5] = 2
-    with pytest.raises(delaunay.NetworkError) as caught:
+    with pytest.raises(delaunay.PslgError) as caught:
         fill(square, segments, left, right, edge_length=2.0)
     assert set(caught.value.segments) <= {4, 5, 6, 7}
     assert len(caught.value.segments)
@@ -272,21 +273,35 @@ def test_points_slide_as_far_as_they_may_and_triangles_get_better(seed):
     inner = ring(60, 25) @ np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
     given = network((ring(60, 30), 1, 0), (inner, 0, 1))
     points = given[0]
-    room = np.where(np.arange(len(points)) % 5, 0.6, 0)
-    asked = []
-
-    def settled(places):
-        asked.append(places.copy())
-        return np.where(np.arange(len(points))[:, None] < 60, places, points)  # none of the inner ones may
-
+    limits = np.where(np.arange(len(points)) % 5, 0.6, 0)
     fixed, fixed_triangles, _ = fill(*given, edge_length=3.0)
-    vertices, triangles, _ = fill(*given, edge_length=3.0, slide=Slide(room, settled))
-    oracles.check_valid(vertices, triangles)
-    (places,) = asked
-    way = np.hypot(*(places - points).T)
-    assert (way <= room + 1e-12).all()
+    begun = begin(*given, edge_length=3.0, limits=limits)
+    way = np.hypot(*(begun.wanted - points).T)
+    assert (way <= limits + 1e-12).all()
     assert way.max() > 0.05
-    assert np.array_equal(vertices[: len(points)], settled(places))
-    both = fill(*given, edge_length=3.0, slide=Slide(room, lambda places: places))
+    # Of the inner ones the outlines let none go.
+    places = np.where(np.arange(len(points))[:, None] < 60, begun.wanted, points)
+    vertices, triangles, _ = finish(begun, places)
+    oracles.check_valid(vertices, triangles)
+    assert np.array_equal(vertices[: len(points)], places)
+    both = finish(begun)
+    assert np.array_equal(both[0][: len(points)], begun.wanted)
     quality = [oracles.angles(v, t).min(axis=1).mean() for v, t in ((fixed, fixed_triangles), both[:2])]
     assert quality[1] > quality[0]
+
+
+@pytest.mark.parametrize("failures", [1, 2, 3])
+def test_where_refinement_would_have_to_split_the_core_there_is_less_of_it(failures, monkeypatch):
+    given = network((wave(220, 100, lobes=3), 1, 0))
+    cores, refine_locally = [], filling.refine_locally
+
+    def reluctant(vertices, triangles, codes, constraints, n_outline, min_angle):
+        cores.append(len(constraints.segments) - n_outline)
+        return None if len(cores) < failures else refine_locally(vertices, triangles, codes, constraints, n_outline, min_angle)
+
+    monkeypatch.setattr(filling, "refine_locally", reluctant)
+    mesh = fill(*given, edge_length=3.0)
+    check(given, mesh)
+    assert cores == sorted(cores, reverse=True)
+    assert len(set(cores)) == failures == len(cores)
+    assert cores[-1] == 0 or failures < 3

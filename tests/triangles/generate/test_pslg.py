@@ -1,4 +1,4 @@
-"""Dividing the segments of a network: parts as long as wanted, growing evenly; what is known of them goes along."""
+"""Dividing the segments of outlines: parts as long as wanted, growing evenly; what is known of them goes along."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from img2tri.triangles.generate.graded_lattice import Sizes
-from img2tri.triangles.generate.pslg import Network, _geometric, _log_mean, runs
+from img2tri.triangles.generate.graded_lattice import lengths_near
+from img2tri.triangles.generate.pslg import Pslg, _geometric, _log_mean
 
 
 @pytest.mark.parametrize("ratio", [1e-6, 0.1, 0.5, 0.99, 1 - 1e-4, 1 + 1e-4, 1.3, 2.5, 1e6])
@@ -33,12 +33,12 @@ def test_steps_of_even_share_grow_in_geometric_progression(ratio):
 
 
 def line(length):
-    return Network(np.array([0, length], complex), np.array([[0, 1]]), np.array([4]), np.array([7]), np.array([11]))
+    return Pslg(np.array([0, length], complex), np.array([[0, 1]]), np.array([4]), np.array([7]), np.array([11]))
 
 
 def sizes(wanted):
     """Lengths as a function of x alone."""
-    return Sizes.near(np.zeros(1, complex), np.array([1e9]), 1e9, 0.5, lambda points: wanted(points[:, 0]))
+    return lengths_near(np.zeros(1, complex), np.array([1e9]), 1e9, 0.5, lambda points: wanted(points[:, 0]))
 
 
 @pytest.mark.parametrize("growth", [0.0, 0.02, 0.1])
@@ -67,7 +67,7 @@ def test_what_is_short_enough_stays():
 
 def test_only_the_long_ones_are_divided():
     segments, left = np.array([[0, 1], [1, 2], [2, 0]]), np.array([1, 2, 3])
-    given = Network(np.array([0, 1, 8 + 1j]), segments, left, np.zeros(3, int), np.array([5, 6, 7]))
+    given = Pslg(np.array([0, 1, 8 + 1j]), segments, left, np.zeros(3, int), np.array([5, 6, 7]))
     parts, _, at_middles = given.divided(sizes(lambda x: np.full(len(x), 1.0)))
     count = np.bincount(parts.origin)[5:]
     assert count.tolist() == [1, len(parts.left[parts.left == 2]), len(parts.left[parts.left == 3])]
@@ -78,29 +78,23 @@ def test_only_the_long_ones_are_divided():
     assert np.array_equal(parts.segments[1:, 0], parts.segments[:-1, 1])
 
 
-def test_runs():
-    of, place = runs(np.array([2, 1, 0, 3]))
-    assert of.tolist() == [0, 0, 1, 3, 3, 3]
-    assert place.tolist() == [0, 1, 0, 0, 1, 2]
-
-
-def test_rails_are_parallel_to_the_line_between_neighbours():
+def test_slide_lines_are_parallel_to_the_line_between_neighbours():
     z = np.array([0, 2, 3 + 1j, 3 + 4j, 1j * 3])
     ring = np.stack([np.arange(5), (np.arange(5) + 1) % 5], axis=1)
-    square = Network(z, ring, np.ones(5, int), np.zeros(5, int), np.arange(5))
-    rails = square.rails(np.array([0, 0.1, 0.2, 0.0, 0.3]))
-    assert rails.at.tolist() == [1, 2, 4]
-    assert rails.room.tolist() == [0.1, 0.2, 0.3]
-    assert (rails.start == z[[1, 2, 4]]).all()
+    square = Pslg(z, ring, np.ones(5, int), np.zeros(5, int), np.arange(5))
+    lines = square.slide_lines(np.array([0, 0.1, 0.2, 0.0, 0.3]))
+    assert lines.at.tolist() == [1, 2, 4]
+    assert lines.limits.tolist() == [0.1, 0.2, 0.3]
+    assert (lines.start == z[[1, 2, 4]]).all()
     line = np.array([z[2] - z[0], z[3] - z[1], z[0] - z[3]])
-    assert rails.along == pytest.approx(line / np.abs(line))
+    assert lines.along == pytest.approx(line / np.abs(line))
 
 
-def test_what_ends_a_divided_segment_has_no_rail():
+def test_what_ends_a_divided_segment_has_no_line():
     """The parts of a segment lie on one line, which would get a kink."""
     z = np.array([0, 8, 8 + 1j, 8 + 2j, 4 + 2j, 2j])
     ring = np.stack([np.arange(6), (np.arange(6) + 1) % 6], axis=1)
-    network = Network(z, ring, np.ones(6, int), np.zeros(6, int), np.arange(6))
-    divided, _, _ = network.divided(sizes(lambda x: np.full(len(x), 4.0)))
+    outlines = Pslg(z, ring, np.ones(6, int), np.zeros(6, int), np.arange(6))
+    divided, _, _ = outlines.divided(sizes(lambda x: np.full(len(x), 4.0)))
     assert len(divided.segments) == 7
-    assert divided.rails(np.full(6, 0.1)).at.tolist() == [2, 3, 4, 5]
+    assert divided.slide_lines(np.full(6, 0.1)).at.tolist() == [2, 3, 4, 5]

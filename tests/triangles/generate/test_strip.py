@@ -1,4 +1,4 @@
-"""The band beside outlines: which points lie in a region, and that finer ones are there where they are wanted."""
+"""The strip beside outlines: which points lie in a region, and that finer ones are there where they are wanted."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ import shapely
 from networks import network, ring, wave
 
 from img2tri.triangles.generate.filling import fill
-from img2tri.triangles.generate.pslg import Network
+from img2tri.triangles.generate.pslg import Pslg
 from img2tri.triangles.generate.strip import _clear, _inside
 
 
-def as_network(given):
+def as_pslg(given):
     points, segments, left, right = given
-    return Network(points[:, 0] + 1j * points[:, 1], segments, left, right, np.arange(len(segments)))
+    return Pslg(points[:, 0] + 1j * points[:, 1], segments, left, right, np.arange(len(segments)))
 
 
 @pytest.mark.parametrize("turned", [False, True])
@@ -27,7 +27,7 @@ def test_points_are_judged_by_the_side_of_the_nearest_segment(regions, turned):
         segments, given = segments[:, ::-1], given[::-1]
     tried = np.random.default_rng(0).uniform(-30, 30, (4000, 2))
     within = shapely.contains_xy(shapely.Polygon(points), tried[:, 0], tried[:, 1])
-    found = _inside(as_network((points, segments, *given)), tried[:, 0] + 1j * tried[:, 1])
+    found = _inside(as_pslg((points, segments, *given)), tried[:, 0] + 1j * tried[:, 1])
     assert np.array_equal(found, np.where(within, regions[0], regions[1]) != 0)
 
 

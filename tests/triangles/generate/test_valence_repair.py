@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from img2tri.triangles.generate.valence_repair import repaired, surplus
+from img2tri.triangles.generate.valence_repair import excess, repair_valences
 
 CENTRE = 30 - 20j
 
@@ -23,9 +23,9 @@ def free_hub(vertices):
 
 
 @pytest.mark.parametrize("count", range(3, 10))
-def test_the_surplus_is_counted_against_the_angle(count):
+def test_the_excess_is_counted_against_the_angle(count):
     vertices, triangles = wheel(count)
-    extra = surplus(vertices, triangles)
+    extra = excess(vertices, triangles)
     assert extra[0] == pytest.approx(count - 6)
     # Two triangles for an angle of 180 - 360 / count degrees.
     assert extra[1:] == pytest.approx(2 - (180 - 360 / count) / 60)
@@ -37,10 +37,10 @@ def test_the_surplus_is_counted_against_the_angle(count):
 )
 def test_too_few_go_too_many_are_split(count, added, stays):
     vertices, triangles = wheel(count)
-    points, kept = repaired(vertices, triangles, free_hub(vertices))
+    points, kept = repair_valences(vertices, triangles, free_hub(vertices))
     assert len(points) == added
     assert kept.tolist() == [stays] + count * [True]
-    nothing, all_kept = repaired(vertices, triangles, np.zeros(len(vertices), bool))
+    nothing, all_kept = repair_valences(vertices, triangles, np.zeros(len(vertices), bool))
     assert len(nothing) == 0
     assert all_kept.all()
 
@@ -61,8 +61,8 @@ def test_the_split_is_across_the_pair_that_bears_it_best(count, cheapest):
         new.append(around)
         outside += [[k, first + i, first + i + 1] for i in range(5)]
     all_vertices, all_triangles = np.concatenate(new), np.concatenate([triangles, outside])
-    assert {1 + int(i) for i in np.argsort(surplus(all_vertices, all_triangles)[1 : count + 1])[:2]} == pair
-    points, _ = repaired(all_vertices, all_triangles, free_hub(all_vertices))
+    assert {1 + int(i) for i in np.argsort(excess(all_vertices, all_triangles)[1 : count + 1])[:2]} == pair
+    points, _ = repair_valences(all_vertices, all_triangles, free_hub(all_vertices))
     # Halves of the ring, both with the two of the pair.
     places = [(cheapest + np.arange(half + 1)) % count, (cheapest + half + np.arange(count - half + 1)) % count]
     expected = [(vertices[1 + at].mean() + CENTRE) / 2 for at in places]
@@ -77,7 +77,7 @@ def test_of_rings_that_share_a_vertex_only_the_first_is_changed():
     second = 2 * vertices[1] - vertices
     both = np.concatenate([vertices, [second[0]], second[2:]])
     hubs = np.isin(np.arange(len(both)), (0, 9))
-    points, stays = repaired(both, np.concatenate([triangles, shifted]), hubs)
+    points, stays = repair_valences(both, np.concatenate([triangles, shifted]), hubs)
     assert not stays[0]
     assert stays[9]
     assert len(points) == 2
@@ -88,5 +88,5 @@ def test_free_vertices_without_triangles_go():
     vertices, triangles = wheel(6)
     lonely = np.concatenate([vertices, [CENTRE + 5, CENTRE - 5]])
     free = np.isin(np.arange(len(lonely)), (0, 7))
-    _, stays = repaired(lonely, triangles, free)
+    _, stays = repair_valences(lonely, triangles, free)
     assert stays.tolist() == 7 * [True] + [False, True]

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from oracles import angles, areas
 from scipy.spatial import Delaunay
 
-from img2tri.triangles.tools.inversion_guard import put_back, sines
+from img2tri.triangles.tools.inversion_guard import put_back
 
 
 def mesh(seed, n=80):
@@ -19,13 +19,6 @@ def mesh(seed, n=80):
     clockwise = areas(points, triangles) < 0
     triangles[clockwise] = triangles[clockwise][:, ::-1]
     return points, triangles[np.abs(areas(points, triangles)) > 1e-6], rng
-
-
-def test_sines_are_those_of_the_smallest_angles():
-    v, t, _ = mesh(0)
-    np.testing.assert_allclose(sines(v, t), np.sin(np.radians(angles(v, t).min(axis=1))), rtol=1e-6)
-    np.testing.assert_allclose(sines(v, t[:, ::-1]), -sines(v, t), rtol=1e-12)
-    assert sines(np.zeros((3, 2)), np.array([[0, 1, 2]])) == 0
 
 
 @settings(max_examples=60, deadline=None)
