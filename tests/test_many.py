@@ -20,8 +20,9 @@ from children import PATIENCE
 from PIL import Image
 
 from img2tri import mesh_image
-from img2tri.cli import batch, main, printing
-from img2tri.cli.jobs import Job
+from img2tri.cli import main, printing
+from img2tri.cli import workers as pool
+from img2tri.cli.job import Job
 
 IMAGES = [specimens.disc(30 + k, 10.0 + k / 2).astype(bool) for k in range(4)]
 CASES = [(image, {"recipe": "conforming"}) for image in IMAGES] + [(image, {"recipe": "unstructured", "threshold": 0}) for image in IMAGES]
@@ -185,7 +186,7 @@ def test_a_mistake_of_ours_in_a_worker_is_not_hidden(images):
     # In the process itself no file is opened that way, so it must be a worker that raised.
     jobs = [Job(name, {}) for name in images("raises.png", "a.png")]
     with pytest.raises(RuntimeError, match=r"raises.png: a mistake in a worker\n(.*\n)*ZeroDivisionError: a mistake"):
-        list(batch.run(jobs, 2, lambda *_: None))
+        list(pool.run(jobs, 2, lambda *_: None))
     assert not multiprocessing.active_children()
 
 
@@ -234,7 +235,7 @@ def test_the_bar_only_goes_forward(images):
     jobs = [Job(name, {"edge_length": 8}) for name in images("a.png", "bad.png", "b.png")]
     for workers in (1, 2):
         calls.clear()
-        outcomes = list(batch.run(jobs, workers, lambda *call: calls.append(call)))
+        outcomes = list(pool.run(jobs, workers, lambda *call: calls.append(call)))
         assert [outcome.image for outcome in outcomes] == ["a.png", "bad.png", "b.png"]
         for number in range(3):
             done = [fraction for k, _, fraction in calls if k == number]

@@ -1,12 +1,16 @@
 """The command line, ``img2tri``, in the order of the flow.
 
-    what was typed      -> arguments     arguments, mesh_options
-    arguments           -> jobs          jobs        an image, and the files to be made of it
-    a job               -> an outcome    mesh_job    by mesh_image, as any user of the library would
-    jobs                -> outcomes      batch       one after the other, or by several processes
-    outcomes            -> words         printing    the one place that prints
+    what was typed      -> arguments     arguments          the commands, and what they share
+                                         option_arguments   options of meshing, from their entries in `img2tri.options`
+                                         save_arguments     options of saving, and which formats take them
+    images as typed     -> names         inputs             folders, patterns
+    arguments           -> jobs          file_names         an image, and the files to be made of it
+    a job               -> an outcome    meshing_job        by mesh_image, as any user of the library would
+    jobs                -> outcomes      workers            one after the other, or by several processes, which are started here
+    outcomes            -> words         printing           the one place that prints
+                                         wording            messages in the words of the command line
 
-`app_command` starts the app; `streams` has stdin and stdout as files; `program` puts the parts together.
+`job` has the records these hand to each other, `stdin_stdout` has stdin and stdout as files; `app_command` starts the app; `program` puts the parts together.
 """
 
 from __future__ import annotations

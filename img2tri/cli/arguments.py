@@ -6,16 +6,21 @@ Only what makes a text a number, a pair or a list is checked here; what values m
 from __future__ import annotations
 
 import re
-from argparse import ArgumentParser, Namespace, RawDescriptionHelpFormatter
+from argparse import ArgumentParser, Namespace, RawDescriptionHelpFormatter, _SubParsersAction
 from collections.abc import Sequence
 from typing import NoReturn
 
 from img2tri import __version__
 from img2tri.cli.app_command import add_app
-from img2tri.cli.mesh_options import add_mesh_options
-from img2tri.options.typed import number, whole_number
+from img2tri.cli.option_arguments import add_mesh_options
+from img2tri.cli.save_arguments import add_save_options
+from img2tri.options.table import nearest
+from img2tri.options.typed import whole_number
 
-IMAGES = "PNG, TIFF, JPEG, BMP and others; - for stdin"
+COMMANDS = ("mesh", "view-report", "quality", "app")
+LABEL = r"(-?\d+|0x[\da-fA-F]+|#[\da-fA-F]{6})"
+LABELS = rf"{LABEL}(,{LABEL})*"
+IMAGES = "files, folders of images, patterns such as scans/*.png; PNG, TIFF, JPEG, BMP and others; - for stdin"
 EXAMPLES = """examples:
   img2tri mesh femur.png -o femur.stl -o femur.vtu --plot femur_mesh.png
   img2tri mesh slice.png -o bone.stl --threshold otsu --spacing 0.5 --height 5
@@ -61,28 +66,46 @@ def parse(argv: Sequence[str]) -> Namespace:
     >>> given.images, given.labels, given.spacing, "edge_length" in given
     (['grains.png'], [1, 2], 0.5, False)
     """
-    given = _parser().parse_args(_unambiguous(argv))
+    parser = _parser()
+    given, unknown = parser.parse_known_args(_with_values(argv))
+    if unknown:
+        _refuse(unknown, parser, given.command)
     if "names" in given:
         given.names = dict(given.names)
     return given
 
 
-def _unambiguous(argv: Sequence[str]) -> list[str]:
-    """Join ``--labels`` and its list, if one follows; argparse would take the name of an image for it."""
+def _refuse(unknown: Sequence[str], parser: ArgumentParser, command: str) -> NoReturn:
+    """Say which option there is not, which is nearest, and where the options of the command are listed."""
+    mine = _commands(parser)[command]
+    wrong = next((text for text in unknown if text.startswith("-")), unknown[0]).partition("=")[0]
+    hint = nearest(wrong, [flag for action in mine._actions for flag in action.option_strings])
+    mine.error(f"{wrong}: there is no such option" + (hint.replace("'", "") if wrong.startswith("-") else ""))
+
+
+def _commands(parser: ArgumentParser) -> dict[str, ArgumentParser]:
+    """Return the parsers of the commands by their names."""
+    choices = next(action.choices for action in parser._actions if isinstance(action, _SubParsersAction))
+    return dict(choices)
+
+
+def _with_values(argv: Sequence[str]) -> list[str]:
+    """Join ``--labels`` and its list, if one follows; argparse would take the name of an image for it. Without a list it means all."""
     joined: list[str] = []
     for argument in argv:
-        if joined and joined[-1] == "--labels":
-            joined[-1] = "--labels=all"
-            if re.fullmatch(r"-?\d+(,-?\d+)*", argument):
-                joined[-1] = f"--labels={argument}"
-                continue
-        joined.append(argument)
+        if joined and joined[-1] == "--labels=all" and re.fullmatch(LABELS, argument):
+            joined[-1] = f"--labels={argument}"
+        else:
+            joined.append("--labels=all" if argument == "--labels" else argument)
     return joined
 
 
 class _Parser(ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Say what is wrong in one line, without the usage of all options before it."""
+        wrong = re.match(r"argument COMMAND: invalid choice: '(.*?)'", message)
+        if wrong:
+            message = f"{wrong[1]!r}: there is no such command{nearest(wrong[1], COMMANDS)}"
         self.exit(2, f"img2tri: {message.removeprefix('argument ')}; see {self.prog} --help\n")
 
 
@@ -147,12 +170,12 @@ def _add_files(parser: ArgumentParser) -> None:
     add("--out-dir", metavar="FOLDER", help="write {stem} with the suffix of each --format to this folder, made if its parent is there")
     about_format = "of files in --out-dir (default ply) or of -o -, such as stl; for --out-dir may be given several times"
     add("--format", dest="formats", action="append", default=[], metavar="F", help=about_format)
-    add("--height", type=number, metavar="H", help="world units: write the closed solid from z = 0 to H, for printing; else flat")
     add("--plot", metavar="FIGURE", help=".png, .svg or .pdf: the mesh over its image, and a histogram")
     colours = ("quality", "region", "none")
     add("--colour-by", choices=colours, default="quality", help="what the figure shows; none: red edges (default quality)")
     add("--report", metavar="REPORT", help=".json: what the mesh keeps of what was promised; a warning for each promise that it does not")
     add("--quiet", action="store_true", help="print errors and warnings only")
+    add_save_options(parser.add_argument_group("how meshes are saved"))
 
     add = parser.add_argument_group("how it is run").add_argument
     about_workers = "mesh so many images at once, in processes of their own (default 1: in this one); the files are the same"

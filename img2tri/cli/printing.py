@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import re
 import sys
 import time
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Self
 
-from img2tri.cli.mesh_job import Outcome
-from img2tri.cli.streams import abandon_stdout
+from img2tri.cli.job import Outcome
+from img2tri.cli.stdin_stdout import abandon_stdout
+from img2tri.cli.wording import in_words_of_the_command_line
 from img2tri.errors import FileError
-from img2tri.options import OPTIONS
 
 if TYPE_CHECKING:
     from rich.progress import Progress
@@ -51,7 +50,7 @@ def tell_failures(failed: Sequence[str], count: int) -> None:
 
 def complain(problem: str, place: str = "") -> None:
     """Print what is wrong as one line on stderr."""
-    tell([f"img2tri: {' '.join((place + _with_options(problem)).split())}"], aside=True)
+    tell([f"img2tri: {' '.join((place + in_words_of_the_command_line(problem)).split())}"], aside=True)
 
 
 def flush() -> None:
@@ -68,27 +67,6 @@ def flush() -> None:
 def _refused(problem: OSError) -> None:
     abandon_stdout()
     raise FileError(f"stdout: cannot be written: {problem.strerror or problem}") from problem
-
-
-def _with_options(message: str) -> str:
-    """Name parameters the way they are typed here.
-
-    Examples
-    --------
-    >>> _with_options("edge_length: expected a number above 0, found -1")
-    '--edge-length: expected a number above 0, found -1'
-    >>> _with_options("labels: expected values other than the background, found 0; give background=None to mesh it too")
-    '--labels: expected values other than the background, found 0; give --background none to mesh it too'
-    """
-    names = "|".join((*OPTIONS, "height", "workers"))
-    # Either the name a message begins with, or a name with a value somewhere in it.
-    pattern = rf"^({names})(?=:)|\b({names})=(True|None|[\d.]+|)"
-
-    def option(match: re.Match[str]) -> str:
-        value = {None: "", "": "", "True": "", "None": " none"}.get(match[3], f" {match[3]}")
-        return "--" + (match[1] or match[2]).replace("_", "-") + value
-
-    return re.sub(pattern, option, message)
 
 
 class Bar:

@@ -18,11 +18,13 @@ from functools import partial
 
 from img2tri.cli.app_command import run_app
 from img2tri.cli.arguments import parse
-from img2tri.cli.batch import run
-from img2tri.cli.jobs import Job, folder, jobs_of, mesh_options, suffix_of_stdin
-from img2tri.cli.mesh_job import about, mesh_of, problem, view
+from img2tri.cli.file_names import folders, jobs_of, mesh_options, suffix_of_stdin
+from img2tri.cli.inputs import expanded
+from img2tri.cli.job import Job
+from img2tri.cli.meshing_job import about, mesh_of, problem, view
 from img2tri.cli.printing import Bar, complain, flush, tell, tell_failures, tell_outcome
-from img2tri.cli.streams import DASH, abandon_stdout, check_stdin, check_stdout, to_stdout
+from img2tri.cli.stdin_stdout import DASH, abandon_stdout, check_stdin, check_stdout, to_stdout
+from img2tri.cli.workers import run
 from img2tri.errors import Img2triError, integer
 
 DONE, BAD, INTERRUPTED = 0, 2, 130
@@ -73,9 +75,10 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _mesh(arguments: Namespace) -> int:
     """Run ``img2tri mesh``. All names are checked before the first image is read."""
     workers, failed = integer("workers", arguments.workers, least=1), []
-    with folder(arguments.out_dir):
-        jobs = jobs_of(arguments)
-        with Bar(arguments.images, quiet=arguments.quiet) as bar, closing(run(jobs, workers, bar)) as outcomes:
+    images = expanded(arguments.images)
+    with folders(arguments):
+        jobs = jobs_of(arguments, images)
+        with Bar(images, quiet=arguments.quiet) as bar, closing(run(jobs, workers, bar)) as outcomes:
             for outcome in outcomes:
                 with bar.aside():
                     tell_outcome(outcome, several=len(jobs) > 1, aside=DASH in arguments.outputs)

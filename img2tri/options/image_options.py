@@ -88,8 +88,8 @@ class SegmentOptions(TypedDict, total=False):
             None,
             "True: every value of the image is a region of its own. A list of values: these are.",
             none="one white zone, region 1",
-            check=o.all_or_labels,
-            typed=typed.all_or_whole_numbers,
+            check=o.all_or_some,
+            typed=typed.all_or_labels,
             sign="[LIST]",
         ),
     ]
@@ -99,7 +99,7 @@ class SegmentOptions(TypedDict, total=False):
             0,
             "The label that is not meshed; None: all are meshed.",
             check=o.one_label,
-            typed=typed.whole_number_or_none,
+            typed=typed.label_or_none,
             sign="N",
         ),
     ]

@@ -128,7 +128,7 @@ def one_label(name: str, value: Any) -> int:
     return label(name, value)
 
 
-def all_or_labels(_name: str, value: Any) -> bool | list[int]:
+def all_or_some(_name: str, value: Any) -> bool | list[int]:
     """Check for True or False, or labels, of which a list is made: an iterator can be read once."""
     from img2tri.raster.labels.label_maps import picked
 

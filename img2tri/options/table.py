@@ -106,7 +106,7 @@ def nearest(name: str, known: Iterable[str]) -> str:
     >>> nearest("edge_lenght", OPTIONS)
     "; did you mean 'edge_length'?"
     """
-    close = difflib.get_close_matches(name, list(known), n=1)
+    close = difflib.get_close_matches(name, list(known), n=1, cutoff=0.7)
     return f"; did you mean {close[0]!r}?" if close else ""
 
 

@@ -29,6 +29,22 @@ def whole_number(given: str) -> int:
         raise ArgumentTypeError(f"expected a whole number, found {given!r}") from None
 
 
+def label_number(given: str) -> int:
+    """Return a label: a whole number, or a colour as ``#dc2828`` or ``0xdc2828``.
+
+    Examples
+    --------
+    >>> label_number("7"), label_number("#dc2828") == label_number("0xdc2828") == 0xDC2828
+    (7, True)
+    """
+    if given.startswith("#") or given.lower().startswith("0x"):
+        try:
+            return int(given.removeprefix("#"), 16)
+        except ValueError:
+            raise ArgumentTypeError(f"expected a colour as in #dc2828, found {given!r}") from None
+    return whole_number(given)
+
+
 def number_or_word(given: str) -> float | str:
     """Return the number a text is, or the text.
 
@@ -64,14 +80,14 @@ def length_by_label(given: str) -> str | dict[int, str]:
     return dict(map(label_and_value, given.split(","))) if "=" in given else given
 
 
-def all_or_whole_numbers(given: str) -> bool | list[int]:
-    """Return True for "all", or whole numbers between commas."""
-    return True if given == "all" else list(map(whole_number, given.split(",")))
+def all_or_labels(given: str) -> bool | list[int]:
+    """Return True for "all", or labels between commas."""
+    return True if given == "all" else list(map(label_number, given.split(",")))
 
 
-def whole_number_or_none(given: str) -> int | None:
-    """Return a whole number, or None for the word."""
-    return None if given.lower() == "none" else whole_number(given)
+def label_or_none(given: str) -> int | None:
+    """Return a label, or None for the word."""
+    return None if given.lower() == "none" else label_number(given)
 
 
 def label_and_value(given: str) -> tuple[int, str]:
@@ -82,7 +98,7 @@ def label_and_value(given: str) -> tuple[int, str]:
     >>> label_and_value("1=bone")
     (1, 'bone')
     """
-    label, _, value = given.partition("=")
+    region, _, value = given.partition("=")
     if not value:
         raise ArgumentTypeError(f"expected the number of a region, =, and what it gets, as in 1=bone, found {given!r}")
-    return whole_number(label), value
+    return label_number(region), value

@@ -77,6 +77,10 @@ ALSO_ARRIVE = [
     (["--labels"], "labels", True),
     (["--labels=all"], "labels", True),
     (["--labels", "-5,7"], "labels", [-5, 7]),
+    (["--labels", "0xdc2828"], "labels", [0xDC2828]),
+    (["--labels", "#dc2828,#00ff00"], "labels", [0xDC2828, 0x00FF00]),
+    (["--background", "#ffffff"], "background", 0xFFFFFF),
+    (["--name", "#dc2828=bone"], "names", {0xDC2828: "bone"}),
     (["--background", "3"], "background", 3),
     (["--background", "-1"], "background", -1),
     (["--spacing", "0.5"], "spacing", 0.5),
@@ -220,6 +224,61 @@ def test_lengths_by_region(tmp_path, capsys):
     assert "edge length field" in capsys.readouterr().out
     _, triangles, _ = load(tmp_path / "a.ply")
     assert len(triangles) == len(mesh_image(grains, labels=True, edge_length={1: 2, 2: "8px", 3: "10%"}).triangles)
+
+
+def test_labels_may_be_the_last_word(arrived, disc):
+    assert main(["mesh", disc, "--labels"]) == 0
+    assert arrived == [(disc, {"labels": True})]
+
+
+def test_a_folder_is_all_its_images_and_a_pattern_those_it_matches(tmp_path, monkeypatch, arrived):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "scans" / "more").mkdir(parents=True)
+    for name in ("s10.png", "s9.png", "S1.PNG", ".hidden.png", "more/deep.png"):
+        _saved(specimens.disc(20, 8) * 255, tmp_path / "scans" / name)
+    (tmp_path / "scans" / "notes.txt").write_text("no image")
+    assert main(["mesh", "scans", "--quiet"]) == 0
+    assert [Path(image).name for image, _ in arrived] == ["S1.PNG", "s9.png", "s10.png"]
+    arrived.clear()
+    assert main(["mesh", os.path.join("scans", "s*.png"), "--quiet"]) == 0
+    assert [Path(image).name for image, _ in arrived] == ["s9.png", "s10.png"]
+    arrived.clear()
+    _saved(specimens.disc(20, 8) * 255, tmp_path / "a[1].png")
+    assert main(["mesh", "a[1].png", "--quiet"]) == 0
+    assert [image for image, _ in arrived] == ["a[1].png"]
+
+
+def test_folders_of_names_with_a_stem_are_made_and_go_if_they_stay_empty(disc, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    typed = ["--report", "rep/{stem}.json", "-o", "out/{stem}.stl", "--plot", "fig/{stem}.svg", "--quiet"]
+    assert main(["mesh", "none.png", *typed]) == 2
+    assert sorted(os.listdir(tmp_path)) == ["disc.png"]
+    assert main(["mesh", disc, *typed]) == 0
+    assert sorted(os.listdir(tmp_path)) == ["disc.png", "fig", "out", "rep"]
+    assert os.listdir("rep") == ["disc.json"]
+
+
+def test_options_of_saving_reach_the_formats_that_take_them(disc, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    calls = {}
+    monkeypatch.setattr("img2tri.mesh.TriangleMesh.save", lambda _, path, **given: calls.update({path: given}))
+    typed = ["--height", "5", "--layers", "3", "--order", "2", "--deck", "--plane", "strain", "--msh-version", "2.2"]
+    assert main(["mesh", disc, "-o", "a.msh", "-o", "b.inp", "-o", "c.stl", *typed, "--quiet"]) == 0
+    solid = {"height": 5.0, "layers": 3, "order": 2}
+    assert calls == {"a.msh": solid | {"version": "2.2"}, "b.inp": solid | {"deck": True, "plane": "strain"}, "c.stl": {"height": 5.0}}
+
+
+def test_files_are_those_of_the_library(disc, tmp_path):
+    mesh = mesh_image(disc, edge_length=6.0)
+    for suffix, typed, given in (
+        (".msh", ["--msh-version", "2.2", "--order", "2"], {"version": "2.2", "order": 2}),
+        (".inp", ["--deck", "--plane", "strain"], {"deck": True, "plane": "strain"}),
+        (".vtu", ["--height", "4", "--layers", "2"], {"height": 4.0, "layers": 2}),
+    ):
+        typed_path, path = tmp_path / f"typed{suffix}", tmp_path / f"mesh{suffix}"
+        assert main(["mesh", disc, "--edge-length", "6", "-o", str(typed_path), *typed, "--quiet"]) == 0
+        mesh.save(path, **given)
+        assert typed_path.read_bytes() == path.read_bytes(), suffix
 
 
 def test_height_gives_a_closed_solid(disc, tmp_path):
@@ -429,7 +488,12 @@ def test_the_bar_can_show_any_name(tmp_path, monkeypatch):
 BAD_OPTIONS = {
     "no command": ([], "COMMAND"),
     "unknown command": (["mash"], "'mash'"),
-    "unknown option": (["mesh", "DISC", "--fast"], "--fast"),
+    "unknown option": (["mesh", "DISC", "--fast"], "--fast: there is no such option; see img2tri mesh --help"),
+    "misspelt option": (["mesh", "DISC", "--edge-lenght", "8"], "--edge-lenght: there is no such option; did you mean --edge-length?; see"),
+    "Python's name": (["mesh", "DISC", "--min_angle=25"], "--min_angle: there is no such option; did you mean --min-angle?"),
+    "misspelt option of a page": (["view-report", "DISC", "-o", "a.html", "--lables"], "mean --labels?; see img2tri view-report --help"),
+    "misspelt command": (["meshes", "DISC"], "'meshes': there is no such command; did you mean 'mesh'?; see img2tri --help"),
+    "colour of too few digits": (["mesh", "DISC", "--labels=#xyz"], "--labels: expected a colour as in #dc2828, found '#xyz'"),
     "no image": (["mesh"], "IMAGE"),
     "iterations": (["mesh", "DISC", "--iterations", "ten"], "--iterations: expected a whole number, found 'ten'"),
     "min angle": (["mesh", "DISC", "--min-angle", "thirty"], "--min-angle: expected a number, found 'thirty'"),
@@ -442,7 +506,7 @@ BAD_OPTIONS = {
 }
 BAD_INPUT = {
     "missing file": (["none.png"], "none.png"),
-    "folder": (["FOLDER"], "folder"),
+    "folder": (["FOLDER"], "is a folder without images"),
     "not an image": (["TEXT"], "not an image"),
     "truncated": (["TRUNCATED"], "truncated"),
     "black": (["BLACK"], "none"),
@@ -456,10 +520,17 @@ BAD_INPUT = {
     "unit": (["DISC", "--edge-length", "8mm"], "--edge-length: expected a number with a unit, like 8, '8px' or '2%', found '8mm'"),
     "spacing": (["DISC", "--spacing", "0"], "--spacing: expected a number above 0, found 0.0"),
     "no spacing in the file": (["DISC", "--spacing", "file"], "--spacing: 'file' expected a resolution"),
-    "threshold": (["DISC", "--threshold", "high"], "--threshold: expected a number, 'otsu' or None, found 'high'"),
+    "threshold": (["DISC", "--threshold", "high"], "--threshold: expected a number or 'otsu', found 'high'"),
     "labels and threshold": (["DISC", "--labels", "--threshold", "3"], "--threshold: expected to be left out"),
     "label not there": (["DISC", "--labels", "9"], "--labels: expected values of the image, found 9"),
     "label is background": (["DISC", "--labels", "0,255"], "give --background none"),
+    "pattern": (["nothing*.png"], "expected files that match 'nothing*.png', found none"),
+    "names": (["DISC", "--name", "7=bone"], "--name: expected labels of the image, found 7"),
+    "deck of an STL": (["DISC", "--deck"], "--deck: expected with a mesh that ends in .inp, found none"),
+    "layers of nothing": (["DISC", "-o", "a.msh", "--layers", "2"], "--layers: expected with --height"),
+    "version": (["DISC", "-o", "a.msh", "--msh-version", "3"], "--msh-version: expected"),
+    "order": (["DISC", "-o", "a.msh", "--order", "3"], "--order: expected 1 or 2, found 3"),
+    "options": (["DISC", "--options", "TEXT"], "'text.png': expected a report or options as JSON"),
     "height": (["DISC", "--height", "0"], "--height: expected a number above 0, found 0"),
     "suffix": (["DISC", "-o", "a.dwg"], "a.dwg: expected a name that ends in .3mf, .bdf"),
     "suffix of the figure": (["DISC", "--plot", "a.stl"], "a.stl: expected a name that ends in .pdf, .png or .svg"),
@@ -491,7 +562,8 @@ def _written(arguments, disc, tmp_path):
     (tmp_path / "text.png").write_text("text")
     (tmp_path / "truncated.png").write_bytes(data[: len(data) // 2])
     _saved(np.zeros((9, 9)), tmp_path / "black.png")
-    places = {"DISC": disc, "TEXT": "text.png", "TRUNCATED": "truncated.png", "BLACK": "black.png", "FOLDER": str(tmp_path)}
+    (tmp_path / "empty").mkdir()
+    places = {"DISC": disc, "TEXT": "text.png", "TRUNCATED": "truncated.png", "BLACK": "black.png", "FOLDER": "empty"}
     return [places.get(a, a) for a in arguments]
 
 
@@ -787,7 +859,7 @@ def test_no_folder_for_a_moment(disc, monkeypatch, capsys):
     def refuse(**_):
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr("img2tri.cli.streams.TemporaryDirectory", refuse)
+    monkeypatch.setattr("img2tri.cli.stdin_stdout.TemporaryDirectory", refuse)
     assert main(["mesh", disc, "-o", "-", "--format", "stl"]) == 2
     assert "-: cannot be held for a moment: Permission denied; TMPDIR" in _complaint(capsys)
 

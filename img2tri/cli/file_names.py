@@ -9,52 +9,20 @@ from __future__ import annotations
 import os
 import sys
 from argparse import Namespace
-from collections.abc import Collection, Iterator
-from contextlib import contextmanager, suppress
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from collections.abc import Collection, Iterator, Sequence
+from contextlib import ExitStack, contextmanager, suppress
+from typing import Any
 
-from img2tri.cli.streams import DASH, STEM, check_stdin, check_stdout
-from img2tri.errors import FileError, ParameterError, finite
+from img2tri.cli.job import Job
+from img2tri.cli.save_arguments import save_options
+from img2tri.cli.stdin_stdout import DASH, STEM, check_stdin, check_stdout
+from img2tri.errors import FileError, ParameterError
 from img2tri.options import OPTIONS
 from img2tri.options.table import load_options
-
-if TYPE_CHECKING:
-    from img2tri.raster.files.byte_sources import Source
 
 USUAL_FORMAT = ".ply"  # keeps all digits and the regions, and is read everywhere
 SEVERAL_FILES = (".xdmf",)
 LETTERS_ALIKE = ("darwin", "win32")  # where names in large and small letters are one
-
-
-@dataclass(frozen=True)
-class Job:
-    """An image, and what is to be made of it.
-
-    Attributes
-    ----------
-    image, source
-        As typed; and its bytes, once they are read from stdin.
-    options, height
-        Of mesh_image and of the meshes.
-    meshes, plot, colour_by, report
-        The names of files, and what the figure shows.
-    sent
-        The suffix of the mesh that goes to stdout.
-    quiet
-        Whether nothing is to be said about it.
-    """
-
-    image: str
-    options: dict[str, Any]
-    source: Source | None = None
-    height: float | None = None
-    meshes: tuple[str, ...] = ()
-    plot: str | None = None
-    colour_by: str | None = "quality"
-    report: str | None = None
-    sent: str | None = None
-    quiet: bool = False
 
 
 def mesh_options(arguments: Namespace) -> dict[str, Any]:
@@ -64,58 +32,75 @@ def mesh_options(arguments: Namespace) -> dict[str, Any]:
 
 
 @contextmanager
-def folder(path: str | None) -> Iterator[None]:
-    """Make the folder for the results if it is not there; if none came, it goes again."""
+def folders(arguments: Namespace) -> Iterator[None]:
+    """Make the folders for the results if they are not there: that of --out-dir, and those of names with ``{stem}``.
+
+    Folders that stay empty go again.
+    """
+    wanted = {} if arguments.out_dir is None else {arguments.out_dir: "--out-dir"}
+    named = [("-o", name) for name in arguments.outputs] + [("--plot", arguments.plot), ("--report", arguments.report)]
+    wanted |= {os.path.dirname(name): flag for flag, name in named if name and "{stem}" in os.path.basename(name) and os.path.dirname(name)}
+    with ExitStack() as stack:
+        for path, flag in wanted.items():
+            stack.enter_context(_folder(path, flag))
+        yield
+
+
+@contextmanager
+def _folder(path: str, flag: str) -> Iterator[None]:
     made = False
-    if path is not None:
-        try:
-            os.mkdir(path)
-            made = True
-        except FileExistsError:
-            pass  # if it is no folder, the first name in it says so
-        except (OSError, ValueError) as problem:
-            text = getattr(problem, "strerror", None) or problem
-            raise FileError(f"--out-dir: expected a folder, or the name of one to be made, found {path!r}: {text}") from problem
+    try:
+        os.mkdir(path)
+        made = True
+    except FileExistsError:
+        pass  # if it is no folder, the first name in it says so
+    except (OSError, ValueError) as problem:
+        text = getattr(problem, "strerror", None) or problem
+        raise FileError(f"{flag}: expected a folder, or the name of one to be made, found {path!r}: {text}") from problem
     try:
         yield
     finally:
-        if made and path is not None:
+        if made:
             with suppress(OSError):
                 os.rmdir(path)  # refused unless empty
 
 
-def jobs_of(arguments: Namespace) -> list[Job]:
+def jobs_of(arguments: Namespace, images: Sequence[str]) -> list[Job]:
     """Name the files of every image; see that each can be written, and that none is there twice or an image itself."""
     from img2tri.views.formats import save_load as files
     from img2tri.views.formats import svg_dxf_geojson as vectors
     from img2tri.views.formats.atomic_write import writable
     from img2tri.views.formats.solvers import save_for_solvers as export
 
-    if arguments.height is not None:
-        finite("height", arguments.height, above=0)
-    if DASH in arguments.images:
-        _check_stdin(arguments.images.count(DASH))
+    if DASH in images:
+        _check_stdin(images.count(DASH))
     known = {**files.SURFACE_FORMATS, **export.EXPORTS, **vectors.DRAWING_FORMATS}
     formats = _formats(arguments, known)
-    sent, wanted = _sent(arguments, formats), _wanted(arguments, known, formats)
-    owners = {_same(os.path.realpath(image)): image for image in arguments.images if image != DASH}
+    sent, wanted = _sent(arguments, formats, len(images)), _wanted(arguments, known, formats)
+    meshes = {_ending(name) for option, _, name, _ in wanted if option in ("-o", "--out-dir")} | ({sent} if sent else set())
+    saved_with, options = save_options(arguments, sorted(meshes)), mesh_options(arguments)
+    owners = {_same(os.path.realpath(image)): image for image in images if image != DASH}
     jobs = []
-    for image in arguments.images:
+    for image in images:
         names: dict[str, list[str]] = {option: [] for option in ("-o", "--out-dir", "--plot", "--report")}
         for option, where, name, suffixes in wanted:
-            path = os.path.join(where, _named(name, option, image, len(arguments.images)))
+            path = os.path.join(where, _named(name, option, image, len(images)))
             for place in map(_same, _with_companions(os.fspath(writable(path, suffixes)))):
                 if place in owners:
                     raise FileError(f"{option}: expected a file of its own, found {path!r}, which is in use for {owners[place]!r}")
                 owners[place] = image
             names[option].append(path)
         job = Job(
-            image, mesh_options(arguments), height=arguments.height, meshes=(*names["-o"], *names["--out-dir"]),
+            image, options, meshes=tuple((path, saved_with[_ending(path)]) for path in (*names["-o"], *names["--out-dir"])),
             plot=next(iter(names["--plot"]), None), colour_by=None if arguments.colour_by == "none" else arguments.colour_by,
-            report=next(iter(names["--report"]), None), sent=sent, quiet=arguments.quiet,
+            report=next(iter(names["--report"]), None), sent=sent, sent_with=saved_with[sent] if sent else {}, quiet=arguments.quiet,
         )  # fmt: skip
         jobs.append(job)
     return jobs
+
+
+def _ending(name: str) -> str:
+    return os.path.splitext(name)[1].lower()
 
 
 def _formats(arguments: Namespace, known: Collection[str]) -> list[str]:
@@ -129,13 +114,13 @@ def _formats(arguments: Namespace, known: Collection[str]) -> list[str]:
     return list(dict.fromkeys(suffixes))
 
 
-def _sent(arguments: Namespace, suffixes: list[str]) -> str | None:
+def _sent(arguments: Namespace, suffixes: list[str], images: int) -> str | None:
     """Return the suffix of the mesh that goes to stdout, if one does."""
     count = arguments.outputs.count(DASH)
     if not count:
         return None
-    if count > 1 or len(arguments.images) > 1:
-        found = f"{count} times" if count > 1 else f"{len(arguments.images)} images"
+    if count > 1 or images > 1:
+        found = f"{count} times" if count > 1 else f"{images} images"
         raise ParameterError(f"-o -: expected once, and with one image, found {found}; for several, --out-dir names a folder")
     if len(suffixes) != 1:
         found = ", ".join(suffix[1:] for suffix in suffixes) or "none"

@@ -7,13 +7,13 @@ what is a mistake of ours is raised.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from img2tri.cli.jobs import Job
-from img2tri.cli.streams import DASH, STEM, from_stdin, named
+from img2tri.cli.job import Job, Outcome
+from img2tri.cli.stdin_stdout import DASH, STEM, from_stdin, named
 from img2tri.errors import Img2triError
 
 if TYPE_CHECKING:
@@ -21,31 +21,6 @@ if TYPE_CHECKING:
     from img2tri.raster.files.byte_sources import Source
 
 Progress = Callable[[str, float], None]
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """What became of a job.
-
-    Attributes
-    ----------
-    image
-        As typed.
-    lines
-        What the mesh is, what was chosen for the user, and the files.
-    warnings
-        Promises that are not kept.
-    problem
-        Why there is no mesh; None if there is one.
-    data
-        The mesh for stdout.
-    """
-
-    image: str
-    lines: Sequence[str] = ()
-    warnings: Sequence[str] = ()
-    problem: str | None = None
-    data: bytes | None = None
 
 
 def make(job: Job, progress: Progress) -> Outcome:
@@ -76,8 +51,8 @@ def _made(job: Job, progress: Progress) -> Outcome:
 
     image = job.source or opened(job.image, job.options)
     mesh = mesh_image(image, progress=progress, **job.options)
-    for path in job.meshes:
-        mesh.save(path, height=job.height)
+    for path, given in job.meshes:
+        mesh.save(path, **given)
     if job.plot:
         mesh.plot(meshed_pixels(image, job.options), job.plot, colour_by=job.colour_by)
     if job.report:
@@ -86,7 +61,7 @@ def _made(job: Job, progress: Progress) -> Outcome:
         job.image,
         () if job.quiet else (*about(job.image, mesh), *_chosen(job, mesh)),
         mesh.report.warnings if job.report else (),
-        data=None if job.sent is None else _bytes(mesh, job.sent, job.height),
+        data=None if job.sent is None else _bytes(mesh, job.sent, job.sent_with),
     )
 
 
@@ -131,10 +106,10 @@ def _of(options: dict[str, Any], *names: str) -> dict[str, Any]:
     return {name: options[name] for name in names if name in options}
 
 
-def _bytes(mesh: TriangleMesh, suffix: str, height: float | None) -> bytes:
+def _bytes(mesh: TriangleMesh, suffix: str, given: dict[str, Any]) -> bytes:
     """Return a mesh as the bytes of a file."""
     with named(suffix) as path:
-        mesh.save(path, height=height)
+        mesh.save(path, **given)
         return path.read_bytes()
 
 
@@ -158,5 +133,4 @@ def _chosen(job: Job, mesh: TriangleMesh) -> list[str]:
     chosen += "" if threshold is None else f", threshold {threshold:g} ({settings['threshold_from']})"
     count = len(mesh.origin.outlines.left) if mesh.origin and "min_area" not in job.options else 0
     chosen += "" if count < CONFETTI else f"; {count:,} outlines, of which --min-area 20px2 would drop specks"
-    files = [*job.meshes, *filter(None, (job.plot, job.report))]
-    return [f"{'chosen':<12}{chosen}", *([f"{'saved':<12}{', '.join(files)}"] if files else [])]
+    return [f"{'chosen':<12}{chosen}", *([f"{'saved':<12}{', '.join(job.files)}"] if job.files else [])]

@@ -22,8 +22,8 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.context import SpawnProcess
 from typing import Any
 
-from img2tri.cli.jobs import Job
-from img2tri.cli.mesh_job import Outcome, held, make
+from img2tri.cli.job import Job, Outcome
+from img2tri.cli.meshing_job import held, make
 from img2tri.errors import ParameterError
 
 GRACE = 2.0  # seconds for workers to tidy up
