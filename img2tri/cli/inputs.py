@@ -12,7 +12,7 @@ from img2tri.cli.stdin_stdout import DASH
 from img2tri.errors import FileError
 
 STORES = (".zarr", ".ome.zarr")  # folders that are one image
-SUFFIXES = (
+IMAGE_SUFFIXES = (
     *(".png", ".tif", ".tiff", ".jpg", ".jpeg", ".bmp", ".gif", ".webp", ".pgm", ".ppm", ".pbm", ".pnm", ".jp2", ".tga", ".ico", ".avif"),
     *(".dcm", ".nii", ".nii.gz", ".npy", ".npz", ".nrrd", ".nhdr", ".mha", ".mhd"),
 )
@@ -35,7 +35,7 @@ def _names(text: str) -> list[str]:
     if os.path.isdir(text) and not text.rstrip(os.sep).lower().endswith(STORES):
         found = sorted((str(path) for path in Path(text).iterdir() if _is_image(path)), key=by_number)
         if not found:
-            raise FileError(f"{text!r} is a folder without images; expected files that end in {', '.join(SUFFIXES[:4])} and others")
+            raise FileError(f"{text!r} is a folder without images; expected files that end in {', '.join(IMAGE_SUFFIXES[:4])} and others")
         return found
     if glob.has_magic(text) and not os.path.exists(text):
         found = sorted(glob.glob(text, recursive=True), key=by_number)
@@ -47,7 +47,7 @@ def _names(text: str) -> list[str]:
 
 def _is_image(path: Path) -> bool:
     name = path.name.lower()
-    return not name.startswith(".") and ((path.is_file() and name.endswith(SUFFIXES)) or (path.is_dir() and name.endswith(STORES)))
+    return not name.startswith(".") and ((path.is_file() and name.endswith(IMAGE_SUFFIXES)) or (path.is_dir() and name.endswith(STORES)))
 
 
 def by_number(name: str) -> list[tuple[int, int, str]]:
