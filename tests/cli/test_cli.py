@@ -488,7 +488,7 @@ def test_the_bar_can_show_any_name(tmp_path, monkeypatch):
 BAD_OPTIONS = {
     "no command": ([], "COMMAND"),
     "unknown command": (["mash"], "'mash'"),
-    "unknown option": (["mesh", "DISC", "--fast"], "--fast: there is no such option; see img2tri mesh --help"),
+    "unknown option": (["mesh", "DISC", "--xyz"], "--xyz: there is no such option; see img2tri mesh --help"),
     "misspelt option": (["mesh", "DISC", "--edge-lenght", "8"], "--edge-lenght: there is no such option; did you mean --edge-length?; see"),
     "Python's name": (["mesh", "DISC", "--min_angle=25"], "--min_angle: there is no such option; did you mean --min-angle?"),
     "misspelt option of a page": (["view-report", "DISC", "-o", "a.html", "--lables"], "mean --labels?; see img2tri view-report --help"),
