@@ -10,7 +10,8 @@
     outcomes            -> words         printing           the one place that prints
                                          wording            messages in the words of the command line
 
-`job` has the records these hand to each other, `stdin_stdout` has stdin and stdout as files; `app_command` starts the app; `program` puts the parts together.
+`job` has the records these hand to each other, `stdin_stdout` has stdin and stdout as files; `app_command` starts the
+app; `program` puts the parts together.
 """
 
 from __future__ import annotations
