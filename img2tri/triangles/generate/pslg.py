@@ -84,11 +84,11 @@ class Pslg:
         points = start[of[new]] + (stop - start)[of[new]] * np.where(head, way, 1 - way)
         segments = self.segments[of]
         segments[new, 0] = segments[new - 1, 1] = len(self.points) + np.arange(len(new))
-        network = Pslg(np.concatenate([self.points, points]), segments, self.left[of], self.right[of], self.origin[of])
+        divided = Pslg(np.concatenate([self.points, points]), segments, self.left[of], self.right[of], self.origin[of])
         at_middles = at_middles[of]
         changed = np.flatnonzero(parts[of] > 1)
-        at_middles[changed] = sizes.at(network.middles[changed])
-        return network, np.concatenate([at_points, sizes.at(points)]), at_middles
+        at_middles[changed] = sizes.at(divided.middles[changed])
+        return divided, np.concatenate([at_points, sizes.at(points)]), at_middles
 
     def slide_lines(self, limits: Floats) -> SlideLines:
         """Let the first points slide parallel to the line between their neighbours, within limits; but not where segments were divided."""
