@@ -96,7 +96,9 @@ def silhouettes():
     """Thirty masks like those of shape databases: letters, gears, leaves, bones, some 300 to 500 pixels wide; by name."""
     turns = np.random.default_rng(5).uniform(0, 2 * np.pi, 30)
     shapes = {f"letter {c}": letter(c, 420, 0.2 * np.sin(turn)) for c, turn in zip("ABEGKRSW", turns, strict=False)}
-    shapes |= {f"gear {teeth}": gear(teeth, 300 + 4 * teeth, turn) for teeth, turn in zip((7, 9, 12, 16, 20, 26, 32), turns[8:], strict=False)}
+    shapes |= {
+        f"gear {teeth}": gear(teeth, 300 + 4 * teeth, turn) for teeth, turn in zip((7, 9, 12, 16, 20, 26, 32), turns[8:], strict=False)
+    }
     shapes |= {f"leaf {lobes}": leaf(lobes, 440, turn) for lobes, turn in zip((2, 3, 5, 7, 9, 11, 14, 18), turns[15:], strict=False)}
     shapes |= {f"bone {k}": bone(420, turn, 0.03 + 0.01 * k, 0.1 + 0.005 * k) for k, turn in enumerate(turns[23:])}
     return shapes

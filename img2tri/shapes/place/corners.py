@@ -12,6 +12,8 @@ without any doubt, so for them three pixels will do.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from img2tri.arrays import Bools, Floats, Ints, Points, cross
@@ -23,6 +25,7 @@ ROUNDEST = 11.0  # px: segments of this length may meet at one radian on a circl
 SHORTEST_SIDE = 6.0  # px, the least length of a segment that is not along rows or columns
 SHORTEST_ALIGNED = 2.9  # px, the least length of one that is
 ON_LINE = 1e-6  # px, greatest distance of crossings from a segment along rows or columns
+SKIPPED = (0, 1, 2)  # crossings between a segment and the corner it leads to, as these may belong to neither of two
 SLOPPY = 0.09  # of the dual edge: how far a segment may miss the bounds of a crossing
 OUT_OF_BLOCK = 1.65  # of the bounds of its block: how far out a corner may lie, which is then put back into the block
 SAME_CORNER = 1.5  # px, corners nearer to each other are one
@@ -57,8 +60,7 @@ def find_corners(s: BoundedChains, corners_after: Points, bounds: complex) -> tu
     at = _turns(z, np.flatnonzero(line.own[:-1] & usable[:-1] & usable[1:]))
     if not len(at):
         return np.zeros(0, np.int64), np.zeros(0, np.complex128)
-    backs = [_longest_segments(s, line, z, usable, at - skip, -1) for skip in (0, 1, 2)]
-    aheads = [_longest_segments(s, line, z, usable, at + 1 + skip, 1) for skip in (0, 1, 2)]
+    backs, aheads = _segments_around(s, line, z, usable, at)
     # A corner may lie on a dual edge; then the crossing there belongs to neither segment.
     score, off = np.zeros(len(at)), np.zeros(len(at), np.complex128)
     for back in backs:
@@ -88,12 +90,17 @@ def _meeting(back: _Segments, ahead: _Segments) -> tuple[Floats, Points]:
     return np.where(sharp, turn * length, 0), place
 
 
+@dataclass(frozen=True, eq=False)
 class _Segments:
-    """Straight segments, one for each of `n` places: a point, a unit direction away from the place, a length, the greatest miss."""
+    """Straight segments, one for each of n places: a point, a unit direction away from the place, a length, the greatest miss."""
 
-    def __init__(self, n: int) -> None:
-        self.point, self.direction = np.zeros(n, np.complex128), np.ones(n, np.complex128)
-        self.length, self.miss = np.zeros(n), np.full(n, np.inf)
+    point: Points
+    direction: Points
+    length: Floats
+    miss: Floats
+
+    def at(self, chosen: Ints) -> _Segments:
+        return _Segments(self.point[chosen], self.direction[chosen], self.length[chosen], self.miss[chosen])
 
 
 def _turns(z: Points, at: Ints) -> Ints:
@@ -106,34 +113,51 @@ def _turns(z: Points, at: Ints) -> Ints:
     return at[bent]
 
 
-def _longest_segments(s: BoundedChains, line: PaddedChains, z: Points, usable: Bools, at: Ints, step: int) -> _Segments:
+def _segments_around(s: BoundedChains, line: PaddedChains, z: Points, usable: Bools, at: Ints) -> tuple[list[_Segments], list[_Segments]]:
+    """Fit segments that end in the places `at`, or one or two entries before; and segments that begin in the next entry, or after it.
+
+    Neighbouring places ask for the same segments: each is fitted once, and all at once.
+    """
+    wanted = np.zeros((2, len(z)), bool)  # by their last entry backwards, by their first entry forwards
+    for skip in SKIPPED:
+        wanted[0, at - skip] = wanted[1, at + 1 + skip] = True
+    forwards, entry = np.nonzero(wanted)
+    found = _longest_segments(s, line, z, usable, entry, 2 * forwards - 1)
+    number = np.cumsum(wanted).reshape(wanted.shape) - 1
+    return [found.at(number[0, at - skip]) for skip in SKIPPED], [found.at(number[1, at + 1 + skip]) for skip in SKIPPED]
+
+
+def _longest_segments(s: BoundedChains, line: PaddedChains, z: Points, usable: Bools, at: Ints, step: Ints) -> _Segments:
     """Fit segments of growing length from some places on, forwards or backwards; keep the longest that passes through all bounds.
 
     A line of least squares may miss bounds that another line passes: only two lengths in a row end the search.
     """
-    best, going, missed = _Segments(len(at)), np.arange(len(at)), np.zeros(len(at), np.int64)
+    n, source = len(at), line.source
+    point, along, length, miss = np.zeros(n, np.complex128), np.ones(n, np.complex128), np.zeros(n), np.full(n, np.inf)
+    axis, low, high = s.axis[source], s.low[source] - SLOPPY, s.high[source] + SLOPPY
+    going, missed = np.arange(n), np.zeros(n, np.int64)
     for count in LENGTHS:
-        window = np.clip(at[going, None] + step * np.arange(count), 0, len(z) - 1)
+        window = np.clip(at[going, None] + step[going, None] * np.arange(count), 0, len(z) - 1)
         p = z[window]
         middle = p.mean(axis=1)
         d = p - middle[:, None]
         # The direction of least squares: half the argument of the sum of squares of complex offsets.
         direction = np.exp(0.5j * np.angle((d * d).sum(axis=1)))
         direction *= np.where(((p[:, -1] - p[:, 0]) * direction.conj()).real < 0, -1, 1)
-        across = cross(s.axis[line.source[window]], direction[:, None])
-        slide = -cross(d, direction[:, None]) / np.where(across == 0, np.inf, across)
-        source = line.source[window]
-        hits = (slide > s.low[source] - SLOPPY) & (slide < s.high[source] + SLOPPY) & (across != 0) & usable[window]
+        across = cross(axis[window], direction[:, None])
+        beside = cross(d, direction[:, None])
+        slide = -beside / np.where(across == 0, np.inf, across)
+        hits = (slide > low[window]) & (slide < high[window]) & (across != 0) & usable[window]
         kept = hits.all(axis=1)
         fits = going[kept]
-        best.point[fits], best.direction[fits] = middle[kept], direction[kept]
-        best.length[fits] = np.abs(p[kept, -1] - p[kept, 0]) + 1
-        best.miss[fits] = np.abs(cross(d, direction[:, None])).max(axis=1)[kept]
+        point[fits], along[fits] = middle[kept], direction[kept]
+        length[fits] = np.abs(p[kept, -1] - p[kept, 0]) + 1
+        miss[fits] = np.abs(beside[kept]).max(axis=1)
         missed[going] = np.where(kept, 0, missed[going] + 1)
         going = going[missed[going] < 2]
         if not len(going):
             break
-    return best
+    return _Segments(point, along, length, miss)
 
 
 def _repeated(s: BoundedChains, crossings: Ints, places: Points) -> Bools:

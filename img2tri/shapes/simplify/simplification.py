@@ -10,6 +10,7 @@ of neighbouring kept vertices is joined by a *chord*, which stands for an *arc* 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -54,12 +55,12 @@ class Simplification:
         """The chains of the dense outlines."""
         return self.outlines.chains
 
-    @property
+    @cached_property
     def places(self) -> Points:
         """(k,) where the entries lie, vertices where they were offset to."""
         return self.dense + self.offset
 
-    @property
+    @cached_property
     def chords(self) -> tuple[Ints, Ints]:
         """First and last entry of each chord."""
         at = np.flatnonzero(self.kept)
@@ -74,7 +75,7 @@ class Simplification:
         at = np.flatnonzero(self.kept)
         return at[np.unique(self.chains.indices[at], return_index=True)[1]]
 
-    @property
+    @cached_property
     def snapped_entries(self) -> Bools:
         """(k,) bool, the entries of snapped points."""
         return self.snapped[self.chains.indices]

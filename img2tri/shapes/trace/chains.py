@@ -67,17 +67,21 @@ def follow(successor: Ints) -> Sequences:
     if n == 0:
         return Sequences(np.zeros(0, np.int64), np.zeros(1, np.int64), np.zeros(0, bool))
     path = successor.copy()
-    follows = np.flatnonzero(path != NODE)
     has_predecessor = np.zeros(n, bool)
-    has_predecessor[path[follows]] = True
+    has_predecessor[path[path != NODE]] = True
 
-    def graph(sources: Ints, targets: Ints) -> csr_array:
-        return csr_array((np.ones(len(sources), np.int8), (sources, targets)), shape=(n, n))
+    def graph() -> csr_array:
+        """Each item, and at most one that follows it: a matrix with at most one entry in a row."""
+        follows = path != NODE
+        ends = np.concatenate([[0], np.cumsum(follows)])
+        return csr_array((np.ones(ends[-1], np.int8), path[follows], ends), shape=(n, n))
 
-    _, sequence = connected_components(graph(follows, path[follows]), directed=False)
-    by_sequence = np.lexsort((has_predecessor, sequence))
-    begin = by_sequence[np.flatnonzero(np.diff(sequence[by_sequence], prepend=-1))]
-    closed = has_predecessor[begin]
+    _, sequence = connected_components(graph(), directed=False)
+    # Sequences are numbered by their lowest items; an open one begins with the item that follows none.
+    begin = np.flatnonzero(np.diff(np.maximum.accumulate(sequence), prepend=-1))
+    closed = np.ones(len(begin), bool)
+    first = np.flatnonzero(~has_predecessor)
+    begin[sequence[first]], closed[sequence[first]] = first, False
     opens = np.zeros(n, bool)
     opens[begin] = True
     last = np.flatnonzero((path == NODE) | opens[path])
@@ -85,7 +89,6 @@ def follow(successor: Ints) -> Sequences:
     end[sequence[last]] = last
     path[end[:-1]] = begin[1:]
     path[end[-1]] = NODE
-    follows = np.flatnonzero(path != NODE)
-    order = depth_first_order(graph(follows, path[follows]), begin[0], return_predecessors=False).astype(np.int64)
+    order = depth_first_order(graph(), begin[0], return_predecessors=False).astype(np.int64)
     starts = np.append(np.flatnonzero(np.diff(sequence[order], prepend=-1)), n)
     return Sequences(order, starts, closed)
