@@ -48,6 +48,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from img2tri.app.explore import explore
     from img2tri.certificate.report import Report
     from img2tri.errors import FileError, ImageError, Img2triError, MeshError, ParameterError
     from img2tri.mesh import TriangleMesh
@@ -57,6 +58,7 @@ __version__ = "0.1.0"
 
 _PLACES = {
     "mesh_image": "pipeline",
+    "explore": "app.explore",
     "TriangleMesh": "mesh",
     "Report": "certificate.report",
     "Img2triError": "errors",
@@ -66,7 +68,7 @@ _PLACES = {
     "MeshError": "errors",
 }
 
-__all__ = ["FileError", "ImageError", "Img2triError", "MeshError", "ParameterError", "Report", "TriangleMesh", "mesh_image"]
+__all__ = ["FileError", "ImageError", "Img2triError", "MeshError", "ParameterError", "Report", "TriangleMesh", "explore", "mesh_image"]
 
 
 def __getattr__(name: str) -> Any:

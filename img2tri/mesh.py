@@ -16,6 +16,7 @@ from img2tri.triangles.tools.mesh_checks import check_mesh, check_regions
 from img2tri.types import Floats, Frame, Ints, Provenance
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from pyvista import PolyData, UnstructuredGrid
     from shapely import MultiPolygon, Polygon
@@ -252,7 +253,9 @@ class TriangleMesh:
                     raise ParameterError(f"{name}: expected to be left out for {suffix}, found {value!r}; it is for {', '.join(EXPORTS)}")
             save(path, self.vertices, self.triangles, self.regions, height=height, names=self.names, **self._data())
 
-    def plot(self, image: Any = None, path: str | os.PathLike[str] | None = None, *, colour_by: str | None = "quality") -> Figure:
+    def plot(
+        self, image: Any = None, path: str | os.PathLike[str] | None = None, *, colour_by: str | None = "quality", ax: Axes | None = None
+    ) -> Figure:
         """Draw the mesh over its image, with a histogram of its quality beside it.
 
         Parameters
@@ -261,10 +264,12 @@ class TriangleMesh:
             What was meshed, a path or an array; None draws the mesh alone. Where to save the figure (.png, .svg, .pdf).
         colour_by
             "quality", "region", or None for red edges as in the paper's figures.
+        ax
+            Axes of a figure of yours to draw in, without the histogram; None makes a figure, which a notebook shows.
         """
         from img2tri.mesh_pictures import figure
 
-        return figure(self, image, path, colour_by=colour_by)
+        return figure(self, image, path, colour_by=colour_by, ax=ax)
 
     def _cells(self, height: float | None, layers: int, order: int) -> Cells:
         """Return the elements solvers compute on, with their named sets."""

@@ -15,17 +15,19 @@ from img2tri.views.formats.atomic_write import store, writable
 from img2tri.views.page.html_page import page
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 
-def figure(mesh: Any, image: Any, path: str | os.PathLike[str] | None, *, colour_by: str | None) -> Figure:
+def figure(mesh: Any, image: Any, path: str | os.PathLike[str] | None, *, colour_by: str | None, ax: Axes | None = None) -> Figure:
     """Draw a mesh over its image, see `TriangleMesh.plot`."""
     from img2tri.views.figures.plot import draw
 
     q = measure(mesh.vertices, mesh.triangles, ["q"])["q"]
     values = meshed_part(mesh, image)
-    about = {"regions": mesh.regions, "values": q, "frame": mesh.frame, "image": values}
-    return draw(mesh.vertices, mesh.triangles, colour_by=colour_by, path=path, **about)
+    unit = (mesh.origin.settings.get("units") if mesh.origin else None) or ""
+    about = {"regions": mesh.regions, "values": q, "frame": mesh.frame, "image": values, "names": mesh.names, "unit": unit}
+    return draw(mesh.vertices, mesh.triangles, colour_by=colour_by, path=path, ax=ax, **about)
 
 
 def save_page(mesh: Any, path: str | os.PathLike[str], image: Any) -> None:

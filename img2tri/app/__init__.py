@@ -6,7 +6,8 @@ knobs         The options as knobs, and texts typed into them -> values.
 spelling      Options that differ from their defaults -> the command line and the Python that make the same mesh.
 downloads     The mesh as the bytes of a file of any format.
 app_page      The viewer's page with the knobs beside it.
-server        The app: a page and its answers, on this machine only.
+server        The app: a page and its answers, on this machine only; fetching.js asks it.
+explore       The notebook: a widget whose `mesh` is the present one; widget.js asks its kernel.
 
 Beside them: knobs.html and knobs.css, what stands beside the viewer; knobs.js, what the knobs do. The viewer itself is that of
 `img2tri.views.page`.

@@ -9,7 +9,6 @@ written. Errors of the library are answered with their text (422), what is overt
 
 from __future__ import annotations
 
-import io
 import json
 import secrets
 import socket
@@ -20,7 +19,6 @@ from urllib.parse import parse_qs
 from img2tri.app.app_page import app_page
 from img2tri.app.session import OvertakenError, Session
 from img2tri.errors import FileError, Img2triError, ParameterError
-from img2tri.raster.files.byte_sources import source_of
 
 if TYPE_CHECKING:
     from starlette.applications import Starlette
@@ -153,9 +151,7 @@ def answers(session: Session, token: str) -> Starlette:
 
     async def image(request: Request) -> Response:
         data = await _body(request, LARGEST_IMAGE)
-        name = request.query_params.get("name", "image").replace("\\", "/").rpartition("/")[2][-200:] or "image"
-        source = source_of(io.BytesIO(data), max_pixels=session.max_pixels)
-        await run_in_threadpool(session.load, source, name)
+        await run_in_threadpool(session.load_bytes, data, request.query_params.get("name", "image"))
         return await facts(request)
 
     async def download(request: Request) -> Response:

@@ -6,6 +6,7 @@ drawn first and certified later, when the hand rests. An image is read once, not
 
 from __future__ import annotations
 
+import io
 import threading
 import time
 from collections.abc import Mapping
@@ -16,12 +17,13 @@ from img2tri.app.knobs import knobs, values
 from img2tri.errors import Img2triError, MeshError, ParameterError
 from img2tri.mesh import TriangleMesh
 from img2tri.pipeline import mesh_image
+from img2tri.raster.files.byte_sources import source_of
 from img2tri.raster.reading import read
 from img2tri.triangles.tools.quality_summary import measure
 from img2tri.types import Picture
+from img2tri.views.figures.image_png import png
 from img2tri.views.page import html_tables
 from img2tri.views.page.html_page import pieces, thinned
-from img2tri.views.page.image_png import png
 from img2tri.views.page.packing import pack, packed_mesh, placed_marks
 
 READING = ("spacing", "origin", "page")  # options that an image is read with
@@ -70,6 +72,11 @@ class Session:
         picture = read(image, **wanted, max_pixels=self.max_pixels)
         with self._one_at_a_time:
             self._image, self._picture, self._read_with, self.name, self.mesh = image, picture, wanted, name, None
+
+    def load_bytes(self, data: bytes, name: str) -> None:
+        """Take another image, a file as bytes; of its name only what is behind the last slash."""
+        source = source_of(io.BytesIO(data), max_pixels=self.max_pixels)
+        self.load(source, name.replace("\\", "/").rpartition("/")[2][-200:] or "image")
 
     def facts(self) -> bytes:
         """Return what the knobs start from, the picture and its codes, packed."""

@@ -93,6 +93,13 @@ class Report:
     narrow_at: list[tuple[float, float]]
     warnings: list[str]
 
+    def _repr_html_(self) -> str:
+        """Return the table of promises for a notebook."""
+        from img2tri.views.page.html_tables import certificate, from_json, verdict, warnings
+
+        facts = from_json(self.to_json())
+        return f"<p>{verdict(facts)}</p>{certificate(facts, [])}{warnings(facts, [])}"
+
     def to_dict(self) -> dict[str, Any]:
         """Return the report as plain data."""
         return dataclasses.asdict(self)

@@ -134,6 +134,16 @@ class Quality:
     def _number(self) -> int:
         return len(next(iter(self.arrays.values()), ()))
 
+    def _repr_html_(self) -> str:
+        """Return the table for a notebook."""
+        rows = [
+            f"<tr><th>{name}</th>{''.join(f'<td>{figure:.4g}</td>' for figure in figures.values())}<td>{unit}</td></tr>"
+            for name, figures in self.summary().items()
+            for unit in ["degrees" if METRICS[name].unit == "degrees" else ""]
+        ]
+        heads = "".join(f"<th>{key}</th>" for key in ("", "min", "1 %", "mean", "99 %", "max", ""))
+        return f"<table><caption>{str(self).partition(chr(10))[0]}</caption><tr>{heads}</tr>{''.join(rows)}</table>"
+
     def __str__(self) -> str:
         head = f"{self._number} triangles"
         head += f", {self.turned_over} turned over" if self.turned_over else ""

@@ -6,7 +6,10 @@ where they would only darken the picture.
 
 from __future__ import annotations
 
+import io
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -67,7 +70,6 @@ def make_page(vertices: Floats, frame: Frame | None, *, title: str, strip: bool,
     `strip` and `column` say what there must be room for beside it: a scale of colours, and a histogram or a legend.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
 
     least, most = vertices.min(axis=0), vertices.max(axis=0)
     margin = 0.02 * (most - least).max()
@@ -77,7 +79,7 @@ def make_page(vertices: Floats, frame: Frame | None, *, title: str, strip: bool,
     height = max(scale * (top - bottom), _LEAST_HEIGHT if strip or column else 0.5)
     beside = (2 * _GAP + _STRIP) * (strip or column) + _SIDE * column
     above = _TOP if strip or column else 0.5
-    figure = Figure(figsize=(_LEFT + width + beside + _RIGHT, _BOTTOM + height + above))
+    figure = _shown_figure()(figsize=(_LEFT + width + beside + _RIGHT, _BOTTOM + height + above))
     FigureCanvasAgg(figure)
     w, h = figure.get_size_inches()
     figure.suptitle(title, x=_LEFT / w, y=1 - 0.16 / h, ha="left", va="top", fontsize=10.5, color=_INK)
@@ -86,6 +88,43 @@ def make_page(vertices: Floats, frame: Frame | None, *, title: str, strip: bool,
     main.locator_params(axis="x", nbins=int(np.clip(scale * (right - left), 2, 6)))
     main.locator_params(axis="y", nbins=int(np.clip(scale * (top - bottom), 2, 6)))
     return Page(figure, main, (_LEFT + width + _GAP, _BOTTOM), height, 72 * scale)
+
+
+@cache
+def _shown_figure() -> type[Figure]:
+    """Return a figure that a notebook shows, whether pyplot was imported or not; matplotlib is loaded when the first is drawn."""
+    from matplotlib.figure import Figure
+
+    class ShownFigure(Figure):
+        """A `Figure` with its picture for notebooks, which would write its name otherwise."""
+
+        def _repr_png_(self) -> bytes:
+            file = io.BytesIO()
+            self.savefig(file, format="png", dpi=100)
+            return file.getvalue()
+
+    return ShownFigure
+
+
+def page_in(ax: Axes, vertices: Floats, frame: Frame | None, *, title: str | None) -> Page:
+    """Make a page of axes that are there, without a place beside them."""
+    figure = ax.get_figure(root=True)
+    if figure is None:
+        raise ParameterError("ax: expected axes of a figure, found some that were removed from theirs")
+    least, most = vertices.min(axis=0), vertices.max(axis=0)
+    left, bottom, right, top = frame.bounds if frame else (*least, *most)
+    ax.set(xlim=(left, right), ylim=(bottom, top) if frame is None or frame.upward else (top, bottom), aspect="equal")
+    if title is not None:
+        ax.set_title(title)
+    box = ax.get_position()
+    w, h = figure.get_size_inches()
+    return Page(figure, ax, (0.0, 0.0), h * box.height, 72 * min(w * box.width / (right - left), h * box.height / (top - bottom)))
+
+
+def draw_unit(page: Page, unit: str) -> None:
+    """Write the unit of the world beside the axes."""
+    if unit:
+        page.main.set_xlabel(unit, fontsize=8, color=_QUIET, loc="right", labelpad=1)
 
 
 def as_picture(image: ArrayLike) -> NDArray[Any]:
@@ -187,34 +226,52 @@ def draw_histogram(page: Page, values: Floats, *, coloured: bool, foot: float) -
     axes.set_title(f"mean {mean}\nworst {worst}", loc="left", fontsize=8, color=_QUIET, pad=5)
 
 
-def draw_legend(page: Page, labels: NDArray[Any]) -> float:
-    """Name the colours of the regions at the foot of the side; return the inches this takes."""
+def draw_names(page: Page, vertices: Floats, triangles: Ints, labels: NDArray[Any], names: Mapping[int, str]) -> None:
+    """Write the names of the largest regions where these lie: in their triangle that is nearest to their middle."""
+    from matplotlib.patheffects import withStroke
+
+    corners = vertices[triangles]
+    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    areas, middles = abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2, corners.mean(axis=1)
+    present, index = np.unique(labels, return_inverse=True)
+    totals = np.bincount(index, areas)
+    centres = np.stack([np.bincount(index, areas * middles[:, k]) for k in (0, 1)], axis=1) / np.maximum(totals, 1e-300)[:, None]
+    away = np.hypot(*(middles - centres[index]).T)
+    nearest = np.lexsort([away, index])[np.searchsorted(np.sort(index), np.arange(len(present)))]
+    for i in np.argsort(-totals, kind="stable")[:LEGEND]:
+        x, y = middles[nearest[i]]
+        outline = [withStroke(linewidth=2, foreground="white")]
+        page.main.text(x, y, names[int(present[i])], ha="center", va="center", fontsize=7.5, color=_INK, path_effects=outline, clip_on=True)
+
+
+def draw_legend(page: Page, names: Mapping[int, str], *, inside: bool = False) -> float:
+    """Name the colours of the regions at the foot of the side, or `inside` the axes; return the inches this takes."""
     from matplotlib.patches import Patch
 
-    names = np.unique(labels)
-    patches = [Patch(color=colour, label=str(name)) for name, colour in zip(names, palette(len(names)) / 255, strict=True)]
+    patches = [Patch(color=colour, label=name) for name, colour in zip(names.values(), palette(len(names)) / 255, strict=True)]
+    style: dict[str, Any] = {"handles": patches, "fontsize": 8, "labelcolor": _QUIET, "handlelength": 1, "handleheight": 1}
+    if inside:
+        page.main.legend(**style)
+        return 0.0
+    columns = max(1, min(3, 27 // (4 + max(map(len, names.values())))))  # as many as fit beside each other
     left, bottom = page.side
     w, h = page.figure.get_size_inches()
     legend = page.figure.legend(
-        handles=patches,
-        ncols=3,
+        **style,
+        ncols=columns,
         loc="lower left",
         bbox_to_anchor=((left + _STRIP + _GAP) / w, bottom / h),
-        fontsize=8,
         frameon=False,
-        handlelength=1,
-        handleheight=1,
         handletextpad=0.4,
         columnspacing=1,
         borderpad=0,
         borderaxespad=0,
-        labelcolor=_QUIET,
         title="region",
         title_fontsize=8,
         alignment="left",
     )
     legend.get_title().set_color(_QUIET)
-    return 0.65 + 0.2 * -(-len(names) // 3)
+    return 0.65 + 0.2 * -(-len(names) // columns)
 
 
 def _axes(figure: Figure, left: float, bottom: float, width: float, height: float) -> Axes:

@@ -1,18 +1,21 @@
 """A mesh in a notebook: vertices, triangles, regions -> a small SVG, and a piece of HTML with a line of numbers below it.
 
-Small meshes are drawn triangle by triangle, in the colours of their regions; of larger ones only the regions, on a grid of half
-a pixel, so that what is stored in the notebook stays small however large the mesh is.
+Small meshes are drawn triangle by triangle, in the colours of their regions; of larger ones only the regions, as a small picture in the
+SVG, so that what is stored in the notebook stays small however large the mesh is, and however many regions it has.
 """
 
 from __future__ import annotations
 
+import base64
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from img2tri.arrays import unique_edges
+from img2tri.arrays import runs, unique_edges
 from img2tri.types import Bools, Floats, Ints
 from img2tri.views.figures.colours import palette
 from img2tri.views.figures.corner_angles import corner_angles
+from img2tri.views.figures.image_png import png
 from img2tri.views.objects.flat_or_extruded import per_triangle, plane_mesh
 from img2tri.views.objects.region_borders import bordering
 
@@ -20,6 +23,7 @@ LARGEST = 3000  # triangles drawn one by one
 _SIDE = 400  # px, the longer side of the drawing
 _STEPS = 2  # places per px
 _ROWS = 2 * _STEPS * _SIDE  # more than the grid has
+_LINE = (0x5B, 0x6B, 0x7B, 255)
 
 
 def svg(vertices: ArrayLike, triangles: ArrayLike, regions: ArrayLike | None = None, *, upward: bool = True) -> str:
@@ -54,11 +58,17 @@ def svg(vertices: ArrayLike, triangles: ArrayLike, regions: ArrayLike | None = N
     places, (width, height) = _places(v, upward=upward)
     edges, sides = unique_edges(t)
     border = bordering(sides, labels)
-    drawn = _triangles(places, t, labels) if len(t) <= LARGEST else _regions(places, t, labels, border[sides])
+    if len(t) <= LARGEST:
+        line = f'<path d="{_lines(places[edges[border]])}" fill="none" stroke="#5b6b7b" stroke-width="1" stroke-linecap="round"/>'
+        drawn = _triangles(places, t, labels) + line
+    else:
+        p, q, r = (v[t[:, i]] for i in range(3))
+        twice = (q - p)[:, 0] * (r - p)[:, 1] - (q - p)[:, 1] * (r - p)[:, 0]
+        turns = np.where((twice > 0) == upward, -1, 1)  # places have y down
+        drawn = _regions(places, t, turns, labels, border[sides], (width, height))
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="-2 -2 {width + 4} {height + 4}" width="{width + 4}" height="{height + 4}" '
-        f'style="max-width:100%;height:auto" role="img" aria-label="{_numbers(v, t, labels)}">{drawn}'
-        f'<path d="{_lines(places[edges[border]])}" fill="none" stroke="#5b6b7b" stroke-width="1" stroke-linecap="round"/></svg>'
+        f'style="max-width:100%;height:auto" role="img" aria-label="{_numbers(v, t, labels)}">{drawn}</svg>'
     )
 
 
@@ -103,24 +113,41 @@ def _triangles(places: Ints, triangles: Ints, labels: NDArray[np.generic]) -> st
     return "".join(paths)
 
 
-def _regions(places: Ints, triangles: Ints, labels: NDArray[np.generic], borders: Bools) -> str:
-    """Fill each region by the sides (m, 3) that border it, in any order: each as a triangle with the corner of the drawing.
-
-    Where such triangles lie over each other an even number of times, nothing is filled, and what remains is the region: exactly, if edges
-    are not blurred; the lines over them are.
-    """
+def _regions(places: Ints, triangles: Ints, turns: Ints, labels: NDArray[np.generic], borders: Bools, size: tuple[int, int]) -> str:
+    """Draw the regions, filled and with lines between them, as a picture of two dots per px."""
     values, index = np.unique(labels, return_inverse=True)
-    ends = np.stack([triangles[borders], np.roll(triangles, -1, axis=1)[borders]], axis=1)
-    sides = np.sort(_number(places[ends]), axis=1)
-    region = np.broadcast_to(index[:, None], borders.shape)[borders]
-    # Sides that the grid has made one with another cancel, two by two.
-    rows, counts = np.unique(np.column_stack([region, sides]), axis=0, return_counts=True)
-    rows = rows[(counts % 2 == 1) & (rows[:, 1] != rows[:, 2])]
-    paths = []
-    for colour, mine in zip(_colours(len(values)), np.split(rows, np.searchsorted(rows[:, 0], np.arange(1, len(values)))), strict=True):
-        moves = "".join(f"M0 0L{_at(*divmod(a, _ROWS))}L{_at(*divmod(b, _ROWS))}Z" for _, a, b in mine.tolist())
-        paths.append(f'<path d="{moves}" fill="{colour}" fill-rule="evenodd" shape-rendering="crispEdges"/>')
-    return "".join(paths)
+    width, height = _STEPS * size[0], _STEPS * size[1]
+    shown = region_map(places, triangles, turns, index, borders, width, height)
+    edge = np.zeros(shown.shape, bool)
+    for here, there in ((np.s_[1:, :], np.s_[:-1, :]), (np.s_[:, 1:], np.s_[:, :-1])):
+        edge[here] |= shown[here] != shown[there]
+    colours = np.concatenate([[[255, 255, 255]], palette(len(values))]).astype(np.uint8)[shown]
+    picture = np.dstack([colours, np.where(shown > 0, 255, 0).astype(np.uint8)])
+    picture[edge] = _LINE
+    data = base64.b64encode(png(picture)).decode()
+    return f'<image width="{size[0]}" height="{size[1]}" preserveAspectRatio="none" href="data:image/png;base64,{data}"/>'
+
+
+def region_map(places: Ints, triangles: Ints, turns: Ints, index: Ints, borders: Bools, width: int, height: int) -> Ints:
+    """Return for each dot (height, width) the number of its region from 1, 0 where there is none.
+
+    Along a row of dots a region begins where it is crossed by one of its sides that goes up, and ends at one that goes down: what begins
+    and ends is added up from left to right. Only sides that border a region are looked at. `turns` (m,) is 1 for triangles that turn from
+    x to y, -1 for others: on the dots some have no area left.
+    """
+    start, end = places[triangles][borders], places[np.roll(triangles, -1, axis=1)][borders]
+    region = np.broadcast_to(index[:, None] + 1, borders.shape)[borders]
+    up = np.sign(end[:, 1] - start[:, 1]) * np.broadcast_to(turns[:, None], borders.shape)[borders]
+    low, high = np.minimum(start[:, 1], end[:, 1]), np.maximum(start[:, 1], end[:, 1])
+    # The middles of rows low, low + 1, ..., high - 1 are crossed.
+    side, step = runs(high - low)
+    row = low[side] + step
+    share = (row + 0.5 - start[side, 1]) / (end[side, 1] - start[side, 1])
+    column = np.ceil(start[side, 0] + share * (end[side, 0] - start[side, 0]) - 0.5).astype(np.int64)
+    begun = np.zeros((height, width + 1), np.int64)
+    np.add.at(begun, (row.clip(0, height - 1), column.clip(0, width)), -(up[side] * region[side]).astype(np.int64))
+    found: Ints = begun.cumsum(axis=1)[:, :width].clip(0, None)
+    return found
 
 
 def _colours(count: int) -> list[str]:

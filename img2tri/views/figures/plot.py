@@ -9,6 +9,7 @@ from __future__ import annotations
 import io
 import os
 import threading
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,6 +23,7 @@ from img2tri.views.formats.atomic_write import known_suffix, store, writable
 from img2tri.views.objects.flat_or_extruded import per_triangle, plane_mesh
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 SUFFIXES = (".pdf", ".png", ".svg")
@@ -41,6 +43,9 @@ def draw(
     image: ArrayLike | None = None,
     histogram: bool = True,
     title: str | None = None,
+    names: Mapping[int, str] | None = None,
+    unit: str = "",
+    ax: Axes | None = None,
     path: str | os.PathLike[str] | None = None,
 ) -> Figure:
     """Draw a plane mesh, over its image if there is one, with a histogram of its quality beside it.
@@ -66,6 +71,11 @@ def draw(
         Whether to draw the histogram: of `values` when they colour the mesh, else of the smallest angle of each triangle.
     title
         None states counts and worst angle.
+    names, unit
+        Label -> name of the region, for the legend; of the world, such as "mm", for the axes. With more than 12 regions the largest are
+        named where they lie.
+    ax
+        Axes of a figure of yours to draw in, without histogram; the figure is returned. None makes one.
     path
         Where to save the figure: .png, .svg or .pdf. The same input gives the same bytes.
 
@@ -104,12 +114,19 @@ def draw(
     filled = colour_by == "quality"
     named = colour_by == "region" and len(np.unique(labels)) <= parts.LEGEND
     words = _title(v, t, angles) if title is None else title
-    page = parts.make_page(v, frame, title=words, strip=filled, column=histogram or named)
+    if ax is not None:
+        page, histogram = parts.page_in(ax, v, frame, title=title), False
+    else:
+        page = parts.make_page(v, frame, title=words, strip=filled, column=histogram or named)
+    parts.draw_unit(page, unit)
     if picture is not None and frame is not None:
         parts.draw_image(page, picture, frame, faint=colour_by is not None)
     parts.draw_mesh(page, v, t, labels=labels, quality=quality, colour_by=colour_by)
-    foot = parts.draw_legend(page, labels) if named else 0.0
-    if filled:
+    called = {label: (names or {}).get(label, str(label)) for label in np.unique(labels).tolist()}
+    foot = parts.draw_legend(page, called, inside=ax is not None) if named else 0.0
+    if colour_by == "region" and not named:
+        parts.draw_names(page, v, t, labels, called)
+    if filled and ax is None:
         parts.draw_colours(page, label)
     if histogram:
         parts.draw_histogram(page, quality if filled else np.rad2deg(angles.min(axis=1)), coloured=filled, foot=foot)

@@ -3,7 +3,6 @@
 html_page      The mesh, its image and its certificate -> the file. Beside it: page.html, around what is in body.html; page.css.
 html_tables    What the page says in words and tables: the certificate, as plain data -> pieces of HTML.
 histogram_svg  How many triangles have which quality: one number per triangle -> a chart as an SVG.
-image_png      An array -> the bytes of a PNG file.
 packing        The mesh as bytes a browser takes for arrays.
 drawing.js     These bytes -> the mesh, and bitmaps of it; viewer.js moves and marks them; page.js is what is around it;
                alone.js begins where all is in the page.

@@ -21,11 +21,11 @@ from numpy.typing import ArrayLike, NDArray
 from img2tri import __version__
 from img2tri.arrays import Floats, Ints
 from img2tri.types import Frame
+from img2tri.views.figures.image_png import png
 from img2tri.views.objects.body_per_region import unique_names
 from img2tri.views.objects.flat_or_extruded import per_triangle, plane_mesh
 from img2tri.views.page import html_tables as tables
 from img2tri.views.page.histogram_svg import chart
-from img2tri.views.page.image_png import png
 from img2tri.views.page.packing import LARGEST_ANGLE, colours, packed_mesh
 
 SCRIPTS = ("drawing.js", "viewer.js", "page.js")

@@ -69,11 +69,36 @@ class ImageAccessor:
         return img2tri.mesh_image(self._image, **options).to_pyvista(height=height)
 
 
-class MeshAccessor:
-    """``PolyData.img2tri``: what img2tri can do with a plane mesh of triangles, whoever made it."""
+class SolidAccessor:
+    """``UnstructuredGrid.img2tri``: a mesh for solvers, plotted by its regions."""
 
-    def __init__(self, mesh: pyvista.PolyData) -> None:
+    def __init__(self, mesh: Any) -> None:
         self._mesh = mesh
+
+    def plot(self, plotter: pyvista.Plotter | None = None, **options: Any) -> Any:
+        """Plot the mesh, each region in a colour of its own and with its name: ``mesh.to_pyvista(height=3).img2tri.plot()``.
+
+        Parameters
+        ----------
+        plotter
+            To add it to; None makes one and shows it.
+        **options
+            Of ``pyvista.Plotter.add_mesh``.
+
+        Raises
+        ------
+        MeshError
+            If there is no cell array "region".
+        """
+        from img2tri.views.plugin.plot_regions import plot_regions
+
+        return plot_regions(self._mesh, plotter, **options)
+
+
+class MeshAccessor(SolidAccessor):
+    """``PolyData.img2tri``: what img2tri can do with a plane mesh of triangles, whoever made it; and plots of solids too."""
+
+    _mesh: pyvista.PolyData
 
     def quality(self) -> Any:
         """Measure the triangles: angles, areas, edge lengths, ratios, by their Verdict names, and q = 2 r / R.
@@ -157,6 +182,7 @@ def _register() -> None:
 
     pyvista.register_dataset_accessor("img2tri", pyvista.ImageData)(ImageAccessor)
     pyvista.register_dataset_accessor("img2tri", pyvista.PolyData)(MeshAccessor)
+    pyvista.register_dataset_accessor("img2tri", pyvista.UnstructuredGrid)(SolidAccessor)
 
 
 _register()

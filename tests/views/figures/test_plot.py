@@ -82,9 +82,49 @@ def test_coloured_by_region_with_a_legend_and_strong_interfaces():
     assert len(borders.get_segments()) == outer + len(interfaces(triangles, regions))
 
 
-def test_many_regions_have_no_legend():
-    vertices, triangles = cells(np.ones((2, 13), bool))
-    assert draw(vertices, triangles, regions=np.arange(52) // 2, colour_by="region").legends == []
+def test_regions_have_their_names_and_the_axes_their_unit():
+    vertices, triangles, regions = strip()
+    figure = draw(vertices, triangles, regions=regions, colour_by="region", names={7: "cortical bone"}, unit="mm")
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["3", "cortical bone"]
+    assert figure.axes[0].get_xlabel() == "mm"
+    figure.canvas.draw()
+    assert figure.legends[0].get_window_extent().x1 <= figure.bbox.x1
+
+
+def test_of_many_regions_the_largest_are_named_where_they_lie():
+    vertices, triangles = cells(np.ones((4, 13), bool))
+    regions = np.arange(104) // 4
+    regions[:40] = 0
+    figure = draw(vertices, triangles, regions=regions, colour_by="region", names={0: "matrix"})
+    assert figure.legends == []
+    words = figure.axes[0].texts
+    assert len(words) == 12
+    assert words[0].get_text() == "matrix"
+    for word in words:
+        label = {"matrix": 0}.get(word.get_text()) or int(word.get_text().replace("matrix", "0"))
+        middles = vertices[triangles[regions == label]].mean(axis=1)
+        assert np.abs(middles - word.get_position()).sum(axis=1).min() < 1e-9  # inside, in one of its triangles
+
+
+@pytest.mark.parametrize("colour_by", [None, "quality", "region"])
+def test_axes_of_others_are_drawn_in(colour_by):
+    from matplotlib.figure import Figure
+
+    vertices, triangles, regions = strip()
+    mine = Figure()
+    left, right = mine.subplots(1, 2)
+    assert draw(vertices, triangles, regions=regions, colour_by=colour_by, ax=right, image=np.eye(3)) is mine
+    assert mine.axes == [left, right]
+    assert not left.collections
+    assert right.collections
+    assert len(right.images) == 1
+    assert (right.get_legend() is not None) == (colour_by == "region")
+
+
+def test_a_notebook_shows_a_figure_by_itself():
+    data = draw(*ring())._repr_png_()
+    with Image.open(io.BytesIO(data)) as read:
+        assert min(read.size) > 200
 
 
 def test_the_histogram_of_angles():

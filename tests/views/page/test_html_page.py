@@ -17,10 +17,10 @@ import img2tri
 from img2tri.errors import MeshError, ParameterError
 from img2tri.types import Frame
 from img2tri.views.figures.colours import palette
+from img2tri.views.figures.image_png import png
 from img2tri.views.page import html_tables as tables
 from img2tri.views.page.histogram_svg import chart
 from img2tri.views.page.html_page import page
-from img2tri.views.page.image_png import png
 
 GOOD = {
     "recipe": "conforming",

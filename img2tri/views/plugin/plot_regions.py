@@ -1,0 +1,62 @@
+"""Regions in pyvista, each in a colour of its own and with its name: a dataset with the cell array "region" -> a plot with a legend.
+
+Colours are those of img2tri's figures and files. With more regions than a legend can hold, only colours are shown.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from img2tri.errors import MeshError
+from img2tri.views.figures.colours import palette
+from img2tri.views.plugin.dataset_to_cells import written_about
+
+if TYPE_CHECKING:
+    import pyvista
+
+_LEGEND = 12
+
+
+def plot_regions(dataset: Any, plotter: pyvista.Plotter | None = None, **options: Any) -> Any:
+    """Plot a dataset by its regions.
+
+    Parameters
+    ----------
+    dataset
+        With the cell array "region", as `TriangleMesh.to_pyvista` makes it; names are taken from its field data.
+    plotter
+        To add it to; None makes one and shows it.
+    **options
+        Of ``pyvista.Plotter.add_mesh``; edges are shown unless ``show_edges=False``.
+
+    Returns
+    -------
+    Any
+        The plotter that was given; or what ``show`` of the new one returns.
+
+    Raises
+    ------
+    MeshError
+        If there is no cell array "region".
+    """
+    import pyvista
+
+    if "region" not in dataset.cell_data:
+        raise MeshError(f"region: expected this cell array, found {', '.join(dataset.cell_data.keys()) or 'none'}")
+    labels, index = np.unique(dataset.cell_data["region"], return_inverse=True)
+    colours, names = palette(len(labels)), written_about(dataset).get("names", {})
+    copy = dataset.copy(deep=False)
+    copy.cell_data["region_rgb"] = colours[index]
+    flat = dataset.bounds[5] == dataset.bounds[4]
+    shown = pyvista.Plotter() if plotter is None else plotter
+    shown.add_mesh(copy, **{"scalars": "region_rgb", "rgb": True, "show_edges": True, "edge_opacity": 0.4, "lighting": not flat, **options})
+    if len(labels) <= _LEGEND:
+        entries = [(str(names.get(str(label), f"region {label}")), colour / 255) for label, colour in zip(labels, colours, strict=True)]
+        shown.add_legend(entries, face="rectangle", bcolor=None, size=(0.2, 0.04 * len(entries)), loc="upper right")  # type: ignore[arg-type]
+    if plotter is not None:
+        return plotter
+    if flat:
+        shown.view_xy()  # type: ignore[call-arg]
+    return shown.show()
