@@ -89,8 +89,8 @@ def test_pictures_of_the_readme(tmp_path):
     sizes = run("10_pictures_of_the_readme", tmp_path)
     assert max(sizes.values()) < 150_000
     stored = {path.name for path in (EXAMPLES.parent / "data" / "pictures").iterdir()}
-    assert stored == set(sizes)
-    for name in stored:
+    assert stored == {*sizes, "image_to_mesh.gif"}
+    for name in sizes:
         drawn, shown = (Image.open(folder / name).convert("RGB") for folder in (tmp_path, EXAMPLES.parent / "data" / "pictures"))
         assert drawn.size == shown.size
         one, other = (np.asarray(picture.reduce(24), float) for picture in (drawn, shown))
@@ -115,3 +115,29 @@ def test_stress_at_a_hole(tmp_path, count):
         assert found["pixels_60_4"] > 20
     assert found["paper"] < -60
     assert (tmp_path / "stress_at_a_hole.png").stat().st_size > 10_000
+
+
+def test_animation_of_the_readme(tmp_path):
+    found = run("11_animation_of_the_readme", tmp_path)
+    assert found["bytes"] < 400_000
+    stored = EXAMPLES.parent / "data" / "pictures" / "image_to_mesh.gif"
+    with Image.open(tmp_path / "image_to_mesh.gif") as drawn, Image.open(stored) as shown:
+        assert drawn.n_frames == shown.n_frames == found["frames"]
+        for frame in (0, drawn.n_frames - 1):
+            drawn.seek(frame)
+            shown.seek(frame)
+            one, other = (np.asarray(picture.convert("RGB").reduce(24), float) for picture in (drawn, shown))
+            assert abs(one - other).mean() < 4
+
+
+def test_solid_in_trame(tmp_path):
+    found = run("12_solid_in_trame", tmp_path)
+    assert found["volume"] == pytest.approx(found["wanted"], rel=1e-9)
+    assert found["grains"] > 5
+    assert found["wedges"] % 3 == 0
+
+
+def test_labels_in_napari(tmp_path):
+    found = run("13_labels_in_napari", tmp_path)
+    assert found["area"] == pytest.approx(found["pixels"], rel=1e-9)
+    assert found["regions"] > 5
