@@ -128,7 +128,8 @@ def test_what_is_no_plane_mesh_of_triangles_is_refused(mesh):
 
 def test_it_is_registered_once_on_images_and_surfaces():
     found = [(entry.name, entry.target) for entry in pv.registered_accessors() if entry.name == "img2tri"]
-    assert sorted(found, key=str) == sorted([("img2tri", pv.ImageData), ("img2tri", pv.PolyData)], key=str)
+    kinds = (pv.ImageData, pv.PolyData, pv.UnstructuredGrid)
+    assert sorted(found, key=str) == sorted([("img2tri", kind) for kind in kinds], key=str)
 
 
 def test_quality_is_measured_anew_only_where_it_was_before():
