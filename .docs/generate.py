@@ -27,6 +27,24 @@ ROOMS = {
     "options": "Options",
     "app": "App and notebook",
 }
+# Examples that only print: a picture of what they compute on.
+LOOK = {
+    "03_extrude_to_stl": 'img2tri.mesh_image(DATA / "gear.png", edge_length=12, corners="keep").plot(DATA / "gear.png", "{out}/gear.png")',
+    "06_poisson_on_a_disc": 'img2tri.mesh_image(disc(CENTRES[0]), edge_length=20).plot(disc(CENTRES[0]), "{out}/disc.png")',
+    "08_effective_conductivity": (
+        "places = np.stack(np.meshgrid(np.arange(SIZE) + 0.5, SIZE - 0.5 - np.arange(SIZE)), axis=-1).reshape(-1, 2)\n"
+        "image = polycrystal(places, 0).reshape(SIZE, SIZE)\n"
+        'img2tri.mesh_image(image, labels=True, background=None, edge_length=8).plot(path="{out}/grains.png", colour_by="region")'
+    ),
+    "12_solid_in_trame": (
+        'grains = np.asarray(Image.open(DATA / "polycrystal.png"))[:200, :200]\n'
+        'img2tri.mesh_image(grains, labels=True, background=None, edge_length=12).plot(path="{out}/grains.png", colour_by="region")'
+    ),
+    "13_labels_in_napari": (
+        'labels = np.asarray(Image.open(DATA / "polycrystal.png"))[:160, :240]\n'
+        'img2tri.mesh_image(labels, labels=True, background=None, edge_length=10).plot(path="{out}/labels.png", colour_by="region")'
+    ),
+}
 
 
 def everything(here: Path) -> None:
@@ -38,6 +56,7 @@ def everything(here: Path) -> None:
     examples(made / "examples")
     reference(made / "api")
     (made / "glossary.rst").write_text(glossary(), encoding="utf-8")
+    shutil.copytree(ROOT / "data", made / "data", dirs_exist_ok=True)  # where the examples look for it
     for picture in (ROOT / "data" / "pictures").iterdir():
         shutil.copy(picture, made / "static" / picture.name)
 
@@ -47,45 +66,40 @@ def everything(here: Path) -> None:
 
 def examples(folder: Path) -> None:
     """Write each example as a script of sphinx-gallery: a title, its words, its code, and a call of its `main`."""
-    (folder / "README.rst").write_text("Examples\n========\n\nEvery example runs when this site is made; its pictures are drawn then.\n", encoding="utf-8")
+    about = "Every example runs when this site is made; its pictures are drawn then."
+    (folder / "README.rst").write_text(f"Examples\n========\n\n{about}\n", encoding="utf-8")
     for path in sorted((ROOT / "examples").glob("[0-9]*.py")):
-        (folder / path.name).write_text(gallery_script(path.read_text(encoding="utf-8"), path.stem), encoding="utf-8")
+        script = gallery_script(path.read_text(encoding="utf-8"), path.stem)
+        (folder / path.name).write_text(script, encoding="utf-8")
 
 
 def gallery_script(text: str, stem: str) -> str:
     """Turn the text of an example into a script of sphinx-gallery."""
     tree = ast.parse(text)
-    words = ast.get_docstring(tree) or stem
-    first, _, rest = words.partition("\n\n")
-    title, _, more = first.replace("\n", " ").partition(". ") if ". " in first else first.replace("\n", " ").partition(": ")
-    title = title.rstrip(".:")
+    first, _, rest = (ast.get_docstring(tree) or stem).partition("\n\n")
+    title, more = [*re.split(r"\. |(?<=\S): ", first.replace("\n", " "), maxsplit=1), ""][:2]
+    title, more = title.rstrip(".:"), more.strip()
+    # Indented lines are code.
+    rest = re.sub(r"(?<=[^:\n])\n\n(?=    )", "\n\n.. code-block:: text\n\n", "\n\n" + rest).strip("\n")
+    words = f"{more[:1].upper()}{more[1:]}\n\n{rest}".replace("|", "\\|")
     lines = text.splitlines()
     body = "\n".join(lines[tree.body[0].end_lineno : tree.body[-1].lineno - 1]).strip()  # without docstring and the last `if`
-    body = body.replace("Path(__file__).resolve().parent.parent", f"Path({str(ROOT)!r})").replace("Path(__file__).parent.parent", f"Path({str(ROOT)!r})")
-    more = more.strip()
-    more = more[:1].upper() + more[1:]
-    about = f'"""\n{title}\n{"=" * len(title)}\n\n{more}\n\n{_literal(rest)}\n"""'
-    return f'{about}\n\n{body}\n\n# %%\n# Run it:\n\nnumbers = main("out/{stem}")\n'
-
-
-def _literal(words: str) -> str:
-    """Keep indented lines as they are: before them a paragraph ends in two colons."""
-    return re.sub(r"(?<=[^:\n])\n\n(?=    )", "\n\n::\n\n", "\n\n" + words).strip("\n").replace("\n\n::\n\n    ", "\n\n.. code-block:: text\n\n    ")
+    look = LOOK.get(stem, "").replace("{out}", f"out/{stem}")
+    return f'r"""\n{title}\n{"=" * len(title)}\n\n{words}\n"""\n\n{body}\n\n# %%\n# Run it:\n\nnumbers = main("out/{stem}")\n{look}\n'
 
 
 def pictures(_block: Any, variables: dict[str, Any], gallery: dict[str, Any], **_options: Any) -> str:
     """Show the pictures an example has saved: a scraper of sphinx-gallery."""
     from sphinx_gallery.scrapers import figure_rst
 
-    folder = Path(variables["example_globals"].get("__file__") or "").parent
     found = []
     out = Path("out") / Path(variables["src_file"]).stem
+    out.mkdir(parents=True, exist_ok=True)
     for path in sorted([*out.glob("*.png"), *out.glob("*.gif")]):
         target = Path(str(next(variables["image_path_iterator"])))
         shutil.copy(path, target)
         path.unlink()
         found.append(str(target))
-    del folder
     return figure_rst(found, gallery["src_dir"])
 
 
@@ -95,16 +109,11 @@ def pictures(_block: Any, variables: dict[str, Any], gallery: dict[str, Any], **
 def reference(folder: Path) -> None:
     """Write a page for each room, with every public function and class of its modules, and one for what users import."""
     for room, title in ROOMS.items():
-        text = [f"{title}\n{'=' * len(title)}\n", f".. currentmodule:: img2tri.{room}\n"]
-        for module in modules(f"img2tri.{room}"):
-            text.append(module_text(module))
+        text = [f"{title}\n{'=' * len(title)}\n", *map(module_text, modules(f"img2tri.{room}"))]
         (folder / f"{room}.rst").write_text("\n".join(text), encoding="utf-8")
-    rooms = "\n".join(f"   {room}" for room in ROOMS)
-    (folder / "index.rst").write_text(
-        "Reference\n=========\n\nWhat users import from `img2tri` is on the first page; the others go by stage, in the order of the flow.\n\n"
-        f".. toctree::\n   :maxdepth: 1\n\n   public\n{rooms}\n",
-        encoding="utf-8",
-    )
+    about = "What users import is on the first page; the others go by stage, in the order of the flow."
+    rooms = "\n".join(f"   {room}" for room in ("public", *ROOMS))
+    (folder / "index.rst").write_text(f"Reference\n=========\n\n{about}\n\n.. toctree::\n   :maxdepth: 1\n\n{rooms}\n", encoding="utf-8")
     (folder / "public.rst").write_text(public(), encoding="utf-8")
 
 
@@ -118,12 +127,9 @@ def public() -> str:
 
 
 def modules(name: str) -> list[ModuleType]:
-    """Import all modules below one, but those that need what may not be installed."""
-    found = []
-    for info in pkgutil.walk_packages(importlib.import_module(name).__path__, name + "."):
-        if not info.ispkg:
-            found.append(importlib.import_module(info.name))
-    return found
+    """Import all modules below one."""
+    listed = pkgutil.walk_packages(importlib.import_module(name).__path__, name + ".")
+    return [importlib.import_module(info.name) for info in listed if not info.ispkg]
 
 
 def module_text(module: ModuleType) -> str:
@@ -146,6 +152,7 @@ def glossary() -> str:
     listed = words.partition("The words one has to know:")[2].partition("\n\n")[2].partition("\n\n")[0]
     text = "Words\n=====\n\n.. glossary::\n"
     for line in listed.splitlines():
-        name, meaning = line[4:18].strip(), line[18:].strip()
-        text += (f"\n   {name}\n      " if name else "\n      ") + meaning.replace("*", "")
+        begins = re.match(r"    (\S.*?)  +(.*)", line)
+        text += f"\n   {begins[1]}\n      {begins[2]}\n" if begins else f"      {line.strip()}\n"
+    text = text.replace("*", "")
     return text + "\n"

@@ -36,9 +36,9 @@ def main(out: str | Path = "out", *, serve: bool = False) -> dict[str, float]:
 def view(solid) -> None:
     """Serve a page with the solid until it is interrupted."""
     import pyvista
-    from trame_pyvista.ui import plotter_ui
     from trame.app import get_server
     from trame.ui.vuetify3 import SinglePageLayout
+    from trame_pyvista.ui import plotter_ui
 
     plotter = solid.img2tri.plot(pyvista.Plotter(off_screen=True))
     plotter.view_isometric()

@@ -2,7 +2,7 @@
 
     pytest -m benchmark -s tests/benchmarks/test_meshing.py
 
-Prints the table of the README. Machines differ, so times are given as multiples of FLOOR: the time pythoncdt alone takes, in the
+Prints the table of .docs/figures.rst. Machines differ, so times are given as multiples of FLOOR: the time pythoncdt alone takes, in the
 same process, to triangulate the final vertices with the final boundary edges. Ours is the time from the mask in memory to the
 mesh in memory, everything included. All times are of the processor, so that other work on the machine counts little. Nothing here
 fails for being slow.

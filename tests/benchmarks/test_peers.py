@@ -3,7 +3,7 @@
     pip install triangle gmsh nanomesh
     pytest -m benchmark -s tests/benchmarks/test_peers.py
 
-Prints the table of the README, "Compared with others". Times are from the mask in memory to the mesh in memory, of the processor, the
+Prints the table of .docs/figures.rst. Times are from the mask in memory to the mesh in memory, of the processor, the
 least of several, as multiples of FLOOR, see test_meshing.py. Those that mesh outlines, not masks, are given what their users would give
 them at best: the level one half of the mask, blurred by one pixel, in pieces of the edge length. Area is compared with the number of
 pixels; a pixel is wrong if its centre is on the wrong side. Nothing here fails for being slow, or for not being installed.
