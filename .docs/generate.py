@@ -84,6 +84,7 @@ def gallery_script(text: str, stem: str) -> str:
     words = f"{more[:1].upper()}{more[1:]}\n\n{rest}".replace("|", "\\|")
     lines = text.splitlines()
     body = "\n".join(lines[tree.body[0].end_lineno : tree.body[-1].lineno - 1]).strip()  # without docstring and the last `if`
+    body = re.sub(r"Path\(__file__\)(\.resolve\(\))?\.parent\.parent", 'Path("..").resolve()', body)  # scripts of a gallery have no name
     look = LOOK.get(stem, "").replace("{out}", f"out/{stem}")
     return f'r"""\n{title}\n{"=" * len(title)}\n\n{words}\n"""\n\n{body}\n\n# %%\n# Run it:\n\nnumbers = main("out/{stem}")\n{look}\n'
 
