@@ -49,6 +49,11 @@ def polycrystal(n: int = 64, k: int = 12, seed: int = 0) -> np.ndarray:
     return np.argmin([np.hypot(y - r, x - c) for r, c in seeds], axis=0) + 1
 
 
+def checkerboard(n: int = 8) -> np.ndarray:
+    """Pixels of 0 and 1 in turn."""
+    return np.indices((n, n)).sum(0) % 2
+
+
 MASKS = {
     "full": np.ones((5, 7), int),
     "one pixel": drawn("...", ".1.", "..."),

@@ -9,7 +9,11 @@ from __future__ import annotations
 import numpy as np
 
 from img2tri.arrays import Floats, Ints, as_complex
+from img2tri.certificate.outline_distance import SegmentSet
 from img2tri.types import Provenance
+
+AREA_TOLERANCE = 0.01  # relative: what the area of a region may be off
+SMALL_AREA = 16.0  # px: the area of regions up to this size is not promised
 
 
 def region_numbers(regions: Ints, labels: Ints) -> tuple[Ints, list[int]]:
@@ -28,6 +32,22 @@ def region_areas(plane: Floats, triangles: Ints, number: Ints, origin: Provenanc
         for i, label in enumerate(origin.outlines.labels.tolist())
         if i
     }
+
+
+def regions_off(plane: Floats, triangles: Ints, number: Ints, curves: SegmentSet, origin: Provenance) -> dict[int, Floats]:
+    """Places (2,), by label, of regions of more than `SMALL_AREA` pixels whose area is off by more than `AREA_TOLERANCE`.
+
+    The place is the point of the region's outline that is farthest from the curves of the mesh.
+    """
+    found = _moments(plane, triangles, number, len(origin.areas))[0]
+    off = (origin.areas > SMALL_AREA) & (np.abs(found - origin.areas) > AREA_TOLERANCE * origin.areas)
+    off[0] = False
+    segments, left, right = origin.outlines.segments
+    places = {}
+    for i in np.flatnonzero(off).tolist():
+        points = origin.outlines.points[segments[(left == i) | (right == i), 0]]
+        places[int(origin.outlines.labels[i])] = points[np.argmax(curves.distance(points))]
+    return places
 
 
 def displaced(plane: Floats, triangles: Ints, number: Ints, origin: Provenance) -> list[int]:

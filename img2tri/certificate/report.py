@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from img2tri.certificate.outline_distance import SegmentSet, hausdorff, wrong_pixels
-from img2tri.certificate.region_areas import displaced, region_areas, region_numbers
+from img2tri.certificate.region_areas import AREA_TOLERANCE, displaced, region_areas, region_numbers, regions_off
 from img2tri.certificate.topology_and_defects import DEFECTS, defects, neighbours, topology
 from img2tri.triangles.tools.quality_summary import measure
 from img2tri.triangles.tools.topology import curve_edges
@@ -42,6 +42,8 @@ class Report:
         Two-sided distance between the outlines and the boundary and interface edges of the mesh, where, and what it may be.
     areas
         For each label the area in the mesh and in the image, and the relative error.
+    areas_off
+        Places of the labels of more than 16 pixels whose area is off by more than 1 %; empty for recipes that promise nothing of the kind.
     displaced
         Labels whose triangles lie elsewhere than their pixels.
     topology
@@ -73,6 +75,7 @@ class Report:
     hausdorff_at: tuple[float, float]
     tolerance: float | None
     areas: dict[int, dict[str, float]]
+    areas_off: dict[int, tuple[float, float]]
     displaced: list[int]
     topology: dict[int, dict[str, tuple[int, int]]]
     unknown_labels: list[int]
@@ -133,11 +136,13 @@ def certify(vertices: Floats, triangles: Ints, regions: Ints, frame: Frame, orig
     narrow = np.flatnonzero(angle < (origin.min_angle or 0.0) - 1e-9)
     middles = vertices[triangles].mean(axis=1)
     missing, extra = neighbours(triangles, number, outlines)
+    off = regions_off(plane, triangles, number, curves, origin)
     facts: dict[str, Any] = {
         "hausdorff": distance * frame.pixel,
         "hausdorff_at": _place(frame.world(farthest)),
         "tolerance": None if origin.tolerance is None else origin.tolerance * frame.pixel,
         "areas": region_areas(plane, triangles, number, origin, frame.pixel),
+        "areas_off": {} if origin.tolerance is None else {label: _place(frame.world(at)) for label, at in off.items()},
         "displaced": displaced(plane, triangles, number, origin),
         "topology": topology(triangles, number, outlines),
         "unknown_labels": unknown,
@@ -173,6 +178,10 @@ def _warnings(facts: dict[str, Any]) -> list[str]:
         if facts["hausdorff"] > facts["tolerance"] * (1 + 1e-9):
             apart, at = facts["hausdorff"], facts["hausdorff_at"]
             lines.append(f"outline and mesh are {apart:.4g} apart at {at}, tolerance {facts['tolerance']:.4g}")
+        lines += [
+            f"label {v}: area {100 * facts['areas'][v]['error']:+.2g} % off, at {at}; promised is {100 * AREA_TOLERANCE:g} %"
+            for v, at in facts["areas_off"].items()
+        ]
         lines += [f"label {v} lies elsewhere than in the image" for v in facts["displaced"]]
     if facts["wrong_pixels"]:
         lines.append(f"{facts['wrong_pixels']} pixel centres lie in a wrong region, the first at {facts['wrong_pixels_at'][0]}")

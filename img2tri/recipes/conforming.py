@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 from img2tri.arrays import Floats, Ints, Points, as_complex, as_rows
 from img2tri.errors import ParameterError
 from img2tri.raster.labels.segmentation import Segmentation
+from img2tri.recipes.preserved_areas import with_areas_preserved
 from img2tri.shapes.periodic.pairs import FILLINGS, PeriodicPairs, find_periodic_pairs
 from img2tri.shapes.place.placement import place_on_pixel_sides, place_outlines
-from img2tri.shapes.simplify.area_preservation import area_error, preserve_areas
 from img2tri.shapes.simplify.simplification import Simplification, space_evenly
 from img2tri.shapes.simplify.tangential_relocation import relocate, slide_limits
 from img2tri.shapes.simplify.tolerance import split_near
@@ -37,7 +37,6 @@ if TYPE_CHECKING:
 Mesh = tuple[Floats, Ints, Ints]
 """Vertices (n, 2), triangles (m, 3) and regions (m,)."""
 
-AREA_ERROR = 1e-4  # relative, of a region: above it vertices are offset for its sake
 USUAL_TRIANGLES = 2000  # what the default edge length aims at
 RESPACINGS = 2  # how often outlines are spaced anew around places that need shorter chords
 MOST_TRIANGLES = 100_000_000  # some 2 GB of mesh, and several times that on the way
@@ -168,8 +167,8 @@ def conform(
     tell("spacing" if count < CONFETTI else f"spacing {count:,} outlines; min_area would drop specks", 0.3)
     pairs = find_periodic_pairs(outlines, dual_edges, periodic)
     coarse = _spaced(outlines, dual_edges, pairs, sizes, tolerance, corners == "keep", keep_area)
-    if keep_area and area_error(coarse) > AREA_ERROR:
-        coarse = pairs.enforce_tolerance(preserve_areas(coarse, tolerance=tolerance), tolerance=tolerance)
+    if keep_area:
+        coarse = with_areas_preserved(coarse, pairs, tolerance=tolerance)
     demands = _Demands(tolerance, min_angle, keep_area, interior, seed)
     yielding, began = tolerance, 0
     for attempt in range(ATTEMPTS):

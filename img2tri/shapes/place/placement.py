@@ -128,7 +128,8 @@ def _place_nodes(dual_edges: DualEdges) -> Points:
 def place_on_pixel_sides(crack_edges: CrackEdges, frame: Frame) -> tuple[Outlines, DualEdges]:
     """Return the outlines that run exactly along the sides of pixels.
 
-    Only where a checkerboard would make an outline touch itself, the tips of its pixels are cut off half-way along their sides.
+    Only where a checkerboard would make an outline touch itself, the tips of its pixels are cut off half-way along their sides, which
+    are shifted so that no area is lost, see `DualEdges.fair_middle`.
     """
     dual_edges = lay_out(crack_edges, frame)
     n, along = len(dual_edges.crossed), dual_edges.corner_after - dual_edges.middle[: len(dual_edges.crossed)]
@@ -140,5 +141,7 @@ def place_on_pixel_sides(crack_edges: CrackEdges, frame: Frame) -> tuple[Outline
     passes = np.searchsorted(np.sort(crack_edges.tail), crack_edges.head[dual_edges.crossed[one]][:, None] + [0, 1])
     bends = one[turns & (np.diff(passes, axis=1)[:, 0] == 1)]
     dual_edges = cut_chains(dual_edges, bends, frame)
-    dual_edges = replace(dual_edges, vector=np.zeros_like(dual_edges.vector), bounds=np.zeros_like(dual_edges.bounds))
-    return dual_edges.outlines(dual_edges.middle), dual_edges
+    fair = dual_edges.fair_middle
+    vector = np.where(fair == dual_edges.middle, 0, dual_edges.vector)
+    dual_edges = replace(dual_edges, vector=vector, bounds=np.zeros_like(dual_edges.bounds))
+    return dual_edges.outlines(fair), dual_edges

@@ -20,18 +20,19 @@ GREAT = 0.8  # of the greatest chord-arc area of a chain: the chords that get th
 SMALL_REGION = 16  # pixels: the area of smaller regions is not looked after
 
 
-def preserve_areas(s: Simplification, *, tolerance: float, whole: bool = False) -> Simplification:
+def preserve_areas(s: Simplification, *, tolerance: float, whole: bool = False, above: float = 0.0) -> Simplification:
     """Offset vertices along the normal so that the chords enclose what the outlines enclose, chain by chain.
 
     Each vertex takes up half of the chord-arc areas beside it; what then is missing of a chain, since some vertices cannot move, is
     shared evenly by the others. No vertex ends farther from the outline than the tolerance. Where that leaves a small region with too
     much or too little, vertices are added, to be offset the next time.
 
-    `whole` chains are shifted, all their vertices by the same, and no vertices are added: what lies well for its arcs stays so.
+    With `above` only the chains beside regions whose relative error is greater are looked after. `whole` chains are shifted, all their
+    vertices by the same, and no vertices are added: what lies well for its arcs stays so.
     """
     first, last = s.chords
     chain, size = s.chains.chain, len(s.chains.rings)
-    free = NormalOffsets(s)
+    free = NormalOffsets(s, snapped=not whole)
     on, (area, width) = chain[free.at], (part[free.at] for part in areas_beside(s))
     cut = chord_arc_areas(s)
     lost = np.bincount(chain[first], cut, size).astype(np.float64)
@@ -41,17 +42,22 @@ def preserve_areas(s: Simplification, *, tolerance: float, whole: bool = False) 
     share = np.bincount(on, width / 2, size).astype(np.float64)
     missing = lost - np.bincount(on, step * width / 2, size)
     step += np.divide(missing, share, out=np.zeros_like(share), where=share > 0)[on]
+    chosen = np.ones(size, bool)
+    if above:
+        off = area_errors(s) > above
+        chosen = off[s.outlines.left] | off[s.outlines.right]
+        step[~chosen[on]] = 0
     offset = free.shifted(s.offset, step, tolerance)
     taken = ((offset - s.offset)[free.at] * free.right(s.offset).conj()).real
     lacking = np.abs(lost - np.bincount(on, taken * width / 2, size))
     kept = s.kept.copy()
     if not whole:
-        kept[_middles(s, first, last, np.abs(cut), lacking > LACKING_AREA * _smaller_side(s))] = True
+        kept[_middles(s, first, last, np.abs(cut), chosen & (lacking > LACKING_AREA * _smaller_side(s)))] = True
     return replace(s, kept=kept, offset=offset)
 
 
-def area_error(s: Simplification) -> float:
-    """Greatest relative difference between what chords and outlines enclose, over the regions of more than `SMALL_REGION` pixels."""
+def area_errors(s: Simplification) -> Floats:
+    """Relative difference (r,) between what chords and outlines enclose, by region number; 0 for regions of up to `SMALL_REGION` pixels."""
     first, last = s.chords
     chain = s.chains.chain
     arcs = np.concatenate([[0], np.cumsum(cross(s.dense[:-1], s.dense[1:]) / 2)])
@@ -59,9 +65,8 @@ def area_error(s: Simplification) -> float:
     size = len(s.outlines.labels)
     found = np.bincount(s.outlines.left[chain[first]], difference, size) - np.bincount(s.outlines.right[chain[first]], difference, size)
     areas = pixel_areas(s.dual_edges)
-    big = np.flatnonzero(areas > SMALL_REGION)
-    big = big[big > 0]
-    return float(np.max(np.abs(found[big]) / areas[big], initial=0.0))
+    areas[0] = 0
+    return np.asarray(np.divide(np.abs(found), areas, out=np.zeros(size), where=areas > SMALL_REGION))
 
 
 def _smaller_side(s: Simplification) -> Floats:

@@ -207,10 +207,12 @@ def _snap(s: Simplification, entries: Ints, tolerance: float) -> Simplification:
     chosen[indices[entries]] = True
     touched = np.flatnonzero((chosen & ~s.pinned)[indices])
     at = indices[touched]
-    way = s.dual_edges.middle[at] - s.dense[touched]
+    way = s.dual_edges.fair_middle[at] - s.dense[touched]
+    whole = np.abs(way) <= tolerance
     way *= np.minimum(1, tolerance / np.maximum(np.abs(way), 1e-12))
-    # Those that have gone back go on if there is more tolerance than there was.
-    farther = ~s.snapped[at] | (np.abs(way) > np.abs(s.offset[touched]) + LEAST_MOVE)
+    # Those that have gone back go on if there is more tolerance than there was, and return if they were moved since.
+    moved = whole & (np.abs(way - s.offset[touched]) > LEAST_MOVE)
+    farther = ~s.snapped[at] | moved | (np.abs(way) > np.abs(s.offset[touched]) + LEAST_MOVE)
     touched, way = touched[farther], way[farther]
     snapped, offset = s.snapped.copy(), s.offset.copy()
     snapped[indices[touched]] = True

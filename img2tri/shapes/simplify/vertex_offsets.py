@@ -19,6 +19,7 @@ from img2tri.arrays import Floats, Ints, Points, cross
 from img2tri.shapes.simplify.simplification import Simplification
 
 MOST_OFFSET = 0.8  # of the tolerance: how far along the normal a vertex may be offset
+SNAPPED_SLACK = 0.12  # px: how far along the normal a snapped vertex may be offset
 FAIRINGS = 6  # how often a zigzag is smoothed
 FAIR = 0.5  # of `MOST_OFFSET`: how far a vertex may go for that
 
@@ -48,13 +49,14 @@ class NormalOffsets:
         (b,) int64, the vertices before and after them; rings go round.
     """
 
-    def __init__(self, s: Simplification) -> None:
+    def __init__(self, s: Simplification, *, snapped: bool = False) -> None:
         first, last = s.chords
         behind, ahead = np.full((2, len(s.offset)), -1)
         ahead[first], behind[last] = last, first
         self._begin, self._end = s.chains.ring_ends
         behind[self._begin], ahead[self._end] = behind[self._end], ahead[self._begin]
-        may = (behind >= 0) & (ahead >= 0) & ~s.snapped_entries & s.dual_edges.slides[s.chains.indices]
+        stay = s.snapped_entries
+        may = (behind >= 0) & (ahead >= 0) & (snapped | ~stay) & s.dual_edges.slides[s.chains.indices]
         fair = may & may[behind] & may[ahead]
         may[self._end] = False
         self.at = np.flatnonzero(may)
@@ -66,6 +68,8 @@ class NormalOffsets:
         before, after = np.roll(self._dense, 1), np.roll(self._dense, -1)
         before[self._begin], after[self._end] = self._dense[self._end - 1], self._dense[self._begin + 1]
         self._points = self._dense[self.at], before[self.at], after[self.at]
+        self._snapped = stay[self.at]
+        self._rest = s.dual_edges.fair_middle[s.chains.indices[self.at]] - self._points[0]
 
     def zigzag(self, offset: Points) -> Floats:
         """Return how far (b,) to move to smooth a zigzag from vertex to vertex: against the fourth difference, which arcs have none of."""
@@ -87,9 +91,11 @@ class NormalOffsets:
         along = (here * right.conj()).imag
         way = np.where(along > 0, after, before) - point
         on_outline = way * np.clip(np.abs(along) / np.maximum(np.abs(way), 1e-12), 0, 1)
-        off, most = ((here - on_outline) * right.conj()).real, MOST_OFFSET * tolerance
+        start = np.where(self._snapped, self._rest, on_outline)
+        off, most = ((here - start) * right.conj()).real, np.where(self._snapped, SNAPPED_SLACK, MOST_OFFSET * tolerance)
         result = offset.copy()
-        result[self.at] += (np.clip(off + step, -most, most) - off) * right
+        new = here + (np.clip(off + step, -most, most) - off) * right
+        result[self.at] = np.where(self._snapped & (np.abs(new) > np.maximum(np.abs(here), MOST_OFFSET * tolerance)), here, new)
         result[self._end] = result[self._begin]
         return result
 

@@ -16,7 +16,7 @@ from strategies import QUICK
 from img2tri.shapes.place.placement import place_on_pixel_sides, place_outlines
 from img2tri.shapes.polygons import region_polygons
 from img2tri.shapes.trace.crack_edges import find_crack_edges
-from img2tri.shapes.trace.dual_edges import BOUND
+from img2tri.shapes.trace.dual_edges import BOUND, MOST_SHIFT
 from img2tri.types import Frame
 
 FRAMES = [{"upward": False}, {"spacing": (2.0, 1.0)}, {"spacing": (0.4, 0.5), "corner": (9.0, -3.0), "upward": False}]
@@ -236,13 +236,13 @@ def test_on_sides_all_outlines_run_along_the_pixels(name, background, connectivi
     outlines, polygons, _ = check(labels, background, connectivity, on_sides=True)
     sides = shapely.union_all(shapely.linestrings(oracles.pixel_sides(labels, background)))
     cut = tips(labels, background, connectivity)
-    # Each tip cut off is a triangle of half by half a pixel.
+    # Each tip cut off is a triangle of half by half a pixel; the sides beside it are shifted, so that nothing is lost by that.
     for value, p in polygons.items():
-        assert p.area == pytest.approx((labels == value).sum() - cut[value] / 8, abs=1e-9)
+        assert p.area == pytest.approx((labels == value).sum(), rel=1e-5)
     segments, _, _ = outlines.segments
     lines = shapely.union_all(shapely.linestrings(outlines.points[segments]))
     if not any(cut.values()):
         assert lines.symmetric_difference(sides).length < 1e-9
     else:
         assert shapely.hausdorff_distance(lines, sides, densify=0.25) <= 0.5 + 1e-9
-        assert shapely.distance(sides, shapely.points(outlines.points)).max() < 1e-9
+        assert shapely.distance(sides, shapely.points(outlines.points)).max() <= MOST_SHIFT
