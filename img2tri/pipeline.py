@@ -17,6 +17,7 @@ from img2tri.options.mesh_options import FillOptions, OutlineOptions, SizeOption
 from img2tri.options.paper_options import PaperOptions
 from img2tri.options.table import MeshOptions, checked, of, plain
 from img2tri.paper.recipes import paper_mesh
+from img2tri.raster.decisions import decisions
 from img2tri.raster.in_memory.image_hash import image_hash
 from img2tri.raster.labels.cropping import crop
 from img2tri.raster.labels.otsu_threshold import Level
@@ -39,8 +40,8 @@ def mesh_image(image: Any, *, progress: Callable[[str, float], None] | None = No
     Parameters
     ----------
     image
-        A path or a file opened in binary mode; an array (h, w) or (h, w, 3 or 4) of bool, integers or floats; or a planar
-        ``pyvista.ImageData``, on which the mesh then lies.
+        A path or a file opened in binary mode; an array (h, w) or (h, w, 3 or 4) of bool, integers or floats, where masked pixels and
+        NaN are not meshed; a planar ``pyvista.ImageData``, an ``xarray.DataArray`` or a ``SimpleITK.Image``, on which the mesh then lies.
     {options}
     progress : callable | None, default None
         What is called with the name of a stage and the fraction done, and ends the work if it raises.
@@ -103,7 +104,7 @@ def mesh_image(image: Any, *, progress: Callable[[str, float], None] | None = No
         Provenance(
             o["recipe"], kept, kept | _chosen(o, picture, zones, sizes, within), outlines, *pixels_beside(dual_edges),
             areas=pixel_areas(dual_edges) if zones.gray is None else enclosed_areas(outlines),  # gray values may place the outlines
-            counted={**made.counted, "removed": removed},
+            counted={**made.counted, "removed": removed}, notes=decisions(picture, zones),
             tolerance=within if o["recipe"] == "conforming" else None, min_angle=o["min_angle"] if o["recipe"] == "conforming" else None,
         ),
     )  # fmt: skip
@@ -154,7 +155,7 @@ def _chosen(o: MeshOptions, picture: Picture, zones: Segmentation, sizes: Sizes,
         "tolerance": within * frame.pixel,
         "crop": picture.notes.get("crop"),
         "spacing": frame.spacing,
-        "units": o["units"] or ("mm" if picture.notes.get("spacing") == "file" else None),
+        "units": o["units"] or picture.notes.get("units"),
         "source": picture.source,
         "image_sha256": image_hash(picture.values),
     }

@@ -164,12 +164,15 @@ class Picture:
         What it was read from, for people: a path or "array".
     notes
         What was decided while reading (page, orientation, palette), for the report.
+    missing
+        (h, w) bool, the pixels that are not there: no data, NaN, masked. None: all are.
     """
 
     values: NDArray[Any]
     frame: Frame
     source: str = "array"
     notes: dict[str, Any] = field(default_factory=dict)
+    missing: NDArray[np.bool_] | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,10 +12,17 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from img2tri.errors import ParameterError, finite, integer, shown
 from img2tri.raster.files.byte_sources import is_file, source_of
-from img2tri.raster.in_memory.array_checks import pixels
+from img2tri.raster.files.decoded import Decoded
+from img2tri.raster.in_memory.array_checks import as_array, pixels
+from img2tri.raster.in_memory.pillow_object import is_pillow
 from img2tri.raster.in_memory.pyvista_image import from_image_data, is_image_data
+from img2tri.raster.in_memory.simpleitk_image import from_simpleitk, is_simpleitk
+from img2tri.raster.in_memory.xarray_image import from_data_array, is_data_array, knows_its_place
+from img2tri.raster.metadata.nodata import either, present
 from img2tri.types import Frame, Picture
 
 Pair = tuple[float, float]
@@ -38,12 +45,16 @@ def read(
     ----------
     image
         A path (str or PathLike), or a file opened in binary mode, which is read to its end; an array (h, w) or (h, w, 3 or 4)
-        of bool, integers or floats; or a planar ``pyvista.ImageData``, whose active scalars are taken (its first ones if none are
-        active). A `Picture` was read before, with its own options, and is returned as it is.
+        of bool, integers or floats, where masked pixels and NaN are not there, or any object numpy can turn into one; a planar
+        ``pyvista.ImageData``, whose active scalars are taken (its first ones if none are active), an ``xarray.DataArray`` with
+        coordinates or a ``SimpleITK.Image``, which lie where they say; a ``PIL.Image``. A `Picture` was read before, with its own
+        options, and is returned as it is.
     spacing
         The size of a pixel in world units: a number, a pair (dx, dy), or "file", which takes the size or resolution noted in a
-        TIFF, PNG, JPEG, DICOM or NIfTI file, in millimetres. None is "file" for DICOM and NIfTI, if they note a size; 1 for
-        all else, whatever the file says, since many carry a resolution of 72 dpi nobody chose. An ImageData always keeps its own.
+        TIFF, PNG, JPEG, DICOM or NIfTI file: in millimetres, in the unit of an ImageJ or OME-TIFF, or in that of the coordinate
+        system of a GeoTIFF, which then lies at its place unless `origin` is given. None is "file" for DICOM and NIfTI, if they note a
+        size; 1 for all else, whatever the file says, since many carry a resolution of 72 dpi nobody chose. Objects that know their
+        place always keep it.
     origin
         "lower": x points right and y up, the lower-left corner of the image is at (0, 0). "upper": y points down, as in image
         coordinates, the corner of the first pixel is at (0, 0). A pair (x, y): as "lower", with the corner there.
@@ -58,7 +69,8 @@ def read(
     Picture
         Its `notes` hold what was found in a file: "format"; "pages" where there are several, and the "page" taken;
         "orientation" (EXIF, 2 to 8) where the image had to be turned; "palette", (n, 3 or 4) uint8, where the values are
-        indices into it; "spacing", "file" or "ImageData", where it was not given in numbers. For DICOM and NIfTI see `files.dicom` and
+        indices into it; "spacing", "file" or the kind of object, where it was not given in numbers, then with "units";
+        "missing", how many pixels are not there; "min_is_white" for TIFFs whose gray values are stored so. For DICOM and NIfTI see `files.dicom` and
         `files.nifti`.
 
     Raises
@@ -66,7 +78,7 @@ def read(
     FileError
         If the file is missing, a folder, not an image, damaged or truncated; if it needs a library that is not installed.
     ImageError
-        If the values are not those of an image: wrong shape or type, no pixels, NaN or infinite, too many pixels or bytes.
+        If the values are not those of an image: wrong shape or type, no pixels, infinite values, too many pixels or bytes.
     ParameterError
         If `spacing`, `origin`, `page` or `max_pixels` is not as described, or a file is opened as text.
 
@@ -80,38 +92,72 @@ def read(
     if isinstance(image, Picture):
         return image
     page, max_pixels = integer("page", page), integer("max_pixels", max_pixels, least=1)
-    if is_image_data(image):
-        if spacing is not None or not (isinstance(origin, str) and origin == "lower") or page:
-            raise ParameterError("spacing, origin, page: a pyvista.ImageData has its own place; leave them out, or change the object")
-        return from_image_data(image)
+    placed = _placed_object(image, page)
+    if placed is not None:
+        asked = {"spacing": spacing is not None, "origin": not _is_lower(origin), "page": page > 0 and "page" not in placed.notes}
+        if any(asked.values()):
+            what = f"{type(image).__module__.partition('.')[0]}.{type(image).__name__}"
+            raise ParameterError(f"spacing, origin, page: a {what} has its own place; leave them out, or change the object")
+        return placed
     corner, upward = _corner(origin)
-    notes: dict[str, Any] = {}
     if is_file(image):
         from img2tri.raster.files.format_detection import decode  # Pillow is loaded for files only
 
         file = source_of(image, max_pixels=max_pixels)
-        values, notes, noted = decode(file, page, max_pixels)
-        name = str(file)
+        found, name = decode(file, page, max_pixels), str(file)
     else:
-        name, noted = "array", None
         if page:
             raise ParameterError(f"page: expected 0 for an array, which is one image, found {shown(page)}")
-        values = image
-    values = pixels(values)
-    if spacing is None and noted is not None and notes.get("format") in CARRY_SPACING:
+        found, name = _of_array(image), "array"
+    array, masked = present(as_array(found.values))
+    values, notes, missing = pixels(array), dict(found.notes), either(masked, found.missing)
+    if spacing is None and found.size is not None and notes.get("format") in CARRY_SPACING:
         spacing = "file"
-    size = _spacing(spacing, noted, name)
+    size = _spacing(spacing, found.size, name)
     if isinstance(spacing, str):
-        notes["spacing"] = spacing
+        notes |= {"spacing": spacing} | ({"units": found.unit} if found.unit else {})
+        if found.corner is not None and _is_lower(origin):
+            corner = found.corner
+    if missing is not None:
+        notes["missing"] = int(np.count_nonzero(missing))
     h, w = values.shape[:2]
     frame = Frame((h, w), size, corner, upward)
+    _check_precision(frame)
+    return Picture(values, frame, name, notes, missing)
+
+
+def _placed_object(image: Any, page: int) -> Picture | None:
+    """Read an object of another library that knows where it lies; None for all else."""
+    if is_image_data(image):
+        return from_image_data(image)
+    if is_simpleitk(image):
+        return from_simpleitk(image, page)
+    return from_data_array(image) if is_data_array(image) and knows_its_place(image) else None
+
+
+def _of_array(image: Any) -> Decoded:
+    """Take an array, or an object that is one without a place of its own."""
+    if is_pillow(image):
+        from img2tri.raster.files.pillow_images import of_pillow
+
+        return of_pillow(image)
+    if is_data_array(image):
+        picture = from_data_array(image)
+        return Decoded(picture.values, picture.notes, missing=picture.missing)
+    return Decoded(image, {})
+
+
+def _check_precision(frame: Frame) -> None:
     if math.ulp(max(map(abs, frame.bounds))) > FINEST * frame.pixel:
         raise ParameterError(
             f"origin: expected a corner within {FINEST / math.ulp(1.0) * frame.pixel:.0e} of 0 for pixels of {frame.pixel:g}, "
-            f"found {corner}; "
+            f"found {frame.corner}; "
             "beyond, numbers of 64 bits have no places for the vertices. Move the mesh afterwards"
         )
-    return Picture(values, frame, name, notes)
+
+
+def _is_lower(origin: object) -> bool:
+    return isinstance(origin, str) and origin == "lower"
 
 
 def _spacing(spacing: float | Sequence[float] | str | None, noted: Pair | None, source: str) -> Pair:

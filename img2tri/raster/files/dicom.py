@@ -13,9 +13,10 @@ from typing import Any
 
 import numpy as np
 
+from img2tri.arrays import Bools
 from img2tri.errors import FileError
 from img2tri.raster.files.byte_sources import Source
-from img2tri.raster.files.page_checks import Decoded, check_page
+from img2tri.raster.files.decoded import Decoded, check_page
 from img2tri.raster.in_memory.array_checks import Pixels
 from img2tri.raster.metadata.pixel_size import positive_size
 
@@ -40,6 +41,8 @@ def decode_dicom(source: Source, page: int, max_pixels: int) -> Decoded:
         size is from. ImagerPixelSpacing is that on the detector, where things look larger than they are.
     size
         (dx, dy) in millimetres, or None.
+    missing
+        Padding around what was measured, or None.
 
     Raises
     ------
@@ -57,6 +60,7 @@ def decode_dicom(source: Source, page: int, max_pixels: int) -> Decoded:
     pages = int(data.get("NumberOfFrames") or 1)
     notes = {"format": "DICOM"} | check_page(source, page, pages, data.Columns, data.Rows, max_pixels)
     values = _stored(library, source, data, page, pages)
+    missing = _padding(values, data)
     notes["photometric"] = str(data.get("PhotometricInterpretation", ""))
     if notes["photometric"] == "PALETTE COLOR":
         notes["palette"] = _palette(library, data, int(values.max()) + 1)
@@ -68,8 +72,18 @@ def decode_dicom(source: Source, page: int, max_pixels: int) -> Decoded:
         dy, dx = measures.get(tag) or (0, 0)
         size = positive_size(dx, dy)
         if size is not None:
-            return values, notes | {"spacing_from": tag}, size
-    return values, notes, None
+            return Decoded(values, notes | {"spacing_from": tag}, size, missing=missing)
+    return Decoded(values, notes, missing=missing)
+
+
+def _padding(stored: Pixels, data: Any) -> Bools | None:
+    """Return the mask of the pixels that only pad the image to a rectangle: one stored value, or all up to a limit (C.7.5.1.1.2)."""
+    value, limit = data.get("PixelPaddingValue"), data.get("PixelPaddingRangeLimit")
+    if value is None or stored.ndim == 3:
+        return None
+    low, high = (value, value) if limit is None else sorted((int(value), int(limit)))
+    missing = (stored >= low) & (stored <= high)
+    return missing if missing.any() else None
 
 
 def _stored(library: Any, source: Source, data: Any, page: int, pages: int) -> Pixels:

@@ -13,9 +13,9 @@ from PIL import Image, UnidentifiedImageError
 
 from img2tri.errors import FileError, ImageError, Img2triError
 from img2tri.raster.files.byte_sources import GZIP, Source
+from img2tri.raster.files.decoded import Decoded
 from img2tri.raster.files.dicom import decode_dicom
 from img2tri.raster.files.nifti import decode_nifti
-from img2tri.raster.files.page_checks import Decoded
 from img2tri.raster.files.pillow_images import decode_with_pillow, pillow_reads_tiff
 from img2tri.raster.files.tiff import decode_tiff
 
@@ -39,8 +39,8 @@ def decode(source: Source, page: int, max_pixels: int) -> Decoded:
 
     Returns
     -------
-    values, notes, size
-        Pixels upright; see `reading.read` for the notes; (dx, dy) in millimetres or None.
+    Decoded
+        For the notes see `reading.read`.
 
     Raises
     ------

@@ -18,13 +18,14 @@ from PIL import Image
 
 from img2tri.errors import FileError, ImageError
 from img2tri.raster.files.byte_sources import Source
-from img2tri.raster.files.page_checks import Decoded, check_page, turned
+from img2tri.raster.files.decoded import Decoded, check_page, turned
+from img2tri.raster.files.tiff import MIN_IS_WHITE, of_tiff
 from img2tri.raster.files.windows_icons import check_icon
 from img2tri.raster.in_memory.array_checks import Pixels
 from img2tri.raster.metadata.exif_orientation import exif, orientation, upright
 from img2tri.raster.metadata.pixel_size import pixel_size
 
-BITS, SAMPLE_FORMAT = 258, 339  # tags of TIFF
+BITS, PHOTOMETRIC, SAMPLE_FORMAT = 258, 262, 339  # tags of TIFF
 DRAWINGS = ("EPS", "WMF")
 
 # Modes of Pillow whose arrays are the values in the file; the others become one of these.
@@ -98,14 +99,28 @@ def decode_with_pillow(source: Source, start: bytes, page: int, max_pixels: int)
         if page:
             img.seek(page)
             check_page(source, page, pages, *img.size, max_pixels)
-        turn, size = orientation(exif(img)), pixel_size(img)
+        turn, tags = orientation(exif(img)), dict(img.tag_v2) if kind == "TIFF" else None  # type: ignore[attr-defined]
+        size = pixel_size(img)
         img.load()
         deep = _deep_png(source, start) if page == 0 else None
         values, palette = (deep, None) if deep is not None else _values(img)
         if palette is not None:
             notes["palette"] = palette
-    # Pillow turns TIFFs itself while loading.
-    return turned(values if kind == "TIFF" else upright(values, turn), turn, notes, size)
+    if tags is None:
+        return turned(Decoded(upright(values, turn), notes, size), turn)
+    if tags.get(PHOTOMETRIC) == MIN_IS_WHITE and values.ndim == 2:
+        notes["min_is_white"] = True
+        if values.dtype in (bool, np.uint8):
+            values = ~values  # Pillow has turned these round, and no others
+    # Pillow turns TIFFs upright itself while loading.
+    return turned(of_tiff(values, notes, tags, turn), turn)
+
+
+def of_pillow(img: Image.Image) -> Decoded:
+    """Take an image Pillow has opened or made, as it is."""
+    values, palette = _values(img)
+    notes: dict[str, Any] = {"format": "PIL"} | ({} if palette is None else {"palette": palette})
+    return Decoded(values, notes, pixel_size(img))
 
 
 def _values(img: Image.Image) -> tuple[Pixels, Pixels | None]:

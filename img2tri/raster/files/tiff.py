@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 
 from img2tri.errors import FileError, ImageError
 from img2tri.raster.files.byte_sources import Source
-from img2tri.raster.files.page_checks import Decoded, check_page, turned
+from img2tri.raster.files.decoded import Decoded, check_page, turned
 from img2tri.raster.in_memory.array_checks import Pixels
 from img2tri.raster.metadata.exif_orientation import orientation, upright
-from img2tri.raster.metadata.pixel_size import millimetres
+from img2tri.raster.metadata.geotiff_imagej_ome import place_of_tiff
+from img2tri.raster.metadata.nodata import gdal_nodata
 
 MOST_SAMPLES = 4  # red, green, blue and alpha
+MIN_IS_WHITE = 0  # TIFF's word for gray values of which the least is white
 ASSOCIATED = 1  # TIFF's word for colours multiplied by their alpha
 
 
@@ -40,8 +45,18 @@ def decode_tiff(source: Source, page: int, max_pixels: int) -> Decoded:
         values = _divided(values)
     if colormap is not None:
         notes["palette"] = (np.asarray(colormap).T >> 8).astype(np.uint8)
+    if sheet.photometric == MIN_IS_WHITE:
+        notes["min_is_white"] = True
     turn = orientation(tags)
-    return turned(upright(values, turn), turn, notes, millimetres(tags))
+    return turned(of_tiff(upright(values, turn), notes, tags, turn), turn)
+
+
+def of_tiff(values: Pixels, notes: dict[str, Any], tags: Mapping[int, Any], turn: int) -> Decoded:
+    """Add what the tags of a TIFF say to its upright values, whichever library read them."""
+    rows = values.shape[1] if turn >= 5 else values.shape[0]
+    place = place_of_tiff(tags, rows)
+    corner = place.corner if turn == 1 else None  # no program that knows of places turns images
+    return Decoded(values, notes, place.size, place.unit, corner, gdal_nodata(tags, values))
 
 
 def _divided(values: Pixels) -> Pixels:

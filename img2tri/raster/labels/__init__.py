@@ -3,7 +3,9 @@
 segmentation          `segment`: which of the ways below a picture takes -> `Segmentation`: labels, background, and the gray values that
                       place the outlines
 colours_to_gray       colours, palettes and transparency -> one gray value for each pixel
+transparency          the alpha channel -> which pixels are there
 otsu_threshold        gray values -> a mask: a given level, the middle of two values, or Otsu's level
+label_map_check       whether values look like a label map, which is not to be thresholded by mistake
 label_maps            integers or colours -> a label map, and the label that is not meshed (the background)
 cropping              the part of a picture within a box
 connected_components  the pieces of each region that hang together, and how they touch

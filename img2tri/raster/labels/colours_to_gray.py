@@ -15,7 +15,7 @@ from img2tri.raster.in_memory.array_checks import Pixels, pixels
 REC_601 = (0.299, 0.587, 0.114)
 
 
-def to_gray(values: object, *, palette: Pixels | None = None) -> Pixels:
+def to_gray(values: object, *, palette: Pixels | None = None, min_is_white: bool = False) -> Pixels:
     """Reduce an image to one value per pixel.
 
     Parameters
@@ -24,6 +24,8 @@ def to_gray(values: object, *, palette: Pixels | None = None) -> Pixels:
         (h, w), which is returned as it is, or (h, w, 3 or 4) red, green, blue and perhaps alpha.
     palette
         (n, 3 or 4) uint8: `values` are indices into it (`Picture.notes` has it for palette images). None: they are not.
+    min_is_white
+        The least value is white, as some TIFFs have it: what is returned is turned round, so that white is bright.
 
     Returns
     -------
@@ -54,7 +56,7 @@ def to_gray(values: object, *, palette: Pixels | None = None) -> Pixels:
     if palette is not None:
         values = pixels(np.take(palette, values, axis=0))
     if values.ndim == 2:
-        return values
+        return _turned_round(values) if min_is_white else values
     if alpha_is_the_picture(values):
         return values[..., 3]
     gray = _luminance(values[..., :3])
@@ -90,6 +92,12 @@ def full_alpha(values: Pixels) -> float:
 def opaque(values: Pixels) -> Pixels:
     """Return the mask of the pixels of an (h, w, 4) image that nothing shines through."""
     return np.asarray(values[..., 3] >= full_alpha(values))
+
+
+def _turned_round(values: Pixels) -> Pixels:
+    if values.dtype == bool or values.dtype.kind == "u":
+        return ~values
+    return np.asarray(values.max() - values + values.min())
 
 
 def _luminance(colours: Pixels) -> Pixels:

@@ -67,8 +67,9 @@ def crop(picture: Picture, box: Sequence[float] | None) -> Picture:
     columns = (first_column, end_column)
     part = dataclasses.replace(frame, shape=(rows[1] - rows[0], columns[1] - columns[0]), corner=(x + first_column * dx, y + first_up * dy))
     values = np.array(picture.values[slice(*rows), slice(*columns)], order="C")
+    missing = None if picture.missing is None else np.array(picture.missing[slice(*rows), slice(*columns)], order="C")
     notes = picture.notes | {"crop": {"rows": rows, "columns": columns, "of": (h, w)}}
-    return dataclasses.replace(picture, values=values, frame=part, notes=notes)
+    return dataclasses.replace(picture, values=values, frame=part, notes=notes, missing=missing)
 
 
 def _numbers(box: Sequence[float]) -> tuple[float, float, float, float]:

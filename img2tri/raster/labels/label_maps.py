@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from img2tri.arrays import Bools
 from img2tri.errors import ImageError, ParameterError, integer, shown
 from img2tri.raster.in_memory.array_checks import Pixels, pixels
-from img2tri.raster.labels.colours_to_gray import alpha_is_the_picture
 
 LISTED_LABELS = 20  # labels listed in a message
 MOST_LABELS = 2**24  # in a list
@@ -40,7 +40,14 @@ class LabelMap:
     background: int | None
 
 
-def label_map(values: object, *, labels: bool | Iterable[int] | None = True, background: int | None = 0) -> LabelMap:
+def label_map(
+    values: object,
+    *,
+    labels: bool | Iterable[int] | None = True,
+    background: int | None = 0,
+    missing: Bools | None = None,
+    transparent: bool = False,
+) -> LabelMap:
     """Turn an image into a label map.
 
     Parameters
@@ -49,12 +56,16 @@ def label_map(values: object, *, labels: bool | Iterable[int] | None = True, bac
         - (h, w) integers are labels themselves: segmentations, palette indices, gray values. They may have gaps and be negative.
         - (h, w) bool is 0 and 1, floats must be whole numbers.
         - (h, w, 3 or 4) integers: each colour is a label, ``0xRRGGBB`` (``0xRRRRGGGGBBBB`` for uint16). Where all colours are
-          gray the label is the gray value, so a segmentation saved as RGB keeps its numbers. Fully transparent pixels are 0;
-          other alpha is ignored, unless it is all the picture says (see `gray.to_gray`): then it is the label.
+          gray the label is the gray value, so a segmentation saved as RGB keeps its numbers. Alpha is ignored; what it says is said
+          by `missing`.
     labels
         True or None: each value is a region. A sequence: these are, all other pixels are background.
     background
         The value that is not meshed. None: every value is meshed, 0 too, or every value in `labels`.
+    missing
+        (h, w) bool, pixels that are not there. They are background, or have the smallest number from 0 that is no label.
+    transparent
+        True: some of them are so because they are transparent, which is a background of its own: 0, a black pixel, is a label then.
 
     Returns
     -------
@@ -80,14 +91,19 @@ def label_map(values: object, *, labels: bool | Iterable[int] | None = True, bac
     """
     numbers = _whole(pixels(values))
     background = None if background is None else label("background", background)
-    if labels is None or labels is True:
-        return LabelMap(numbers, background)
-    chosen = _chosen(labels, background)
-    _check_found(numbers, chosen)
-    keep = np.isin(numbers, chosen)
+    if transparent and background == 0:
+        background = None
+    chosen = None if labels is None or labels is True else _chosen(labels, background)
+    seen = numbers if missing is None else numbers[~missing]
+    if chosen is not None:
+        _check_found(seen, chosen)
+    keep = np.ones(1, bool) if chosen is None else np.isin(numbers, chosen)
+    if missing is not None:
+        keep = keep & ~missing
     if keep.all():
         return LabelMap(numbers, background)
-    marker = background if background is not None else next(n for n in range(len(chosen) + 1) if n not in chosen)
+    taken = set(chosen) if chosen is not None else set(distinct(seen).tolist())
+    marker = background if background is not None else next(n for n in range(len(taken) + 1) if n not in taken)
     dtype = np.result_type(numbers.dtype, np.min_scalar_type(marker))
     return LabelMap(np.where(keep, numbers, np.asarray(marker, dtype)), marker)
 
@@ -122,8 +138,6 @@ def _whole(values: Pixels) -> NDArray[Any]:
 
 
 def _colours(values: Pixels) -> NDArray[Any]:
-    if alpha_is_the_picture(values):
-        return _whole(values[..., 3])
     red, green, blue = values[..., 0], values[..., 1], values[..., 2]
     gray = bool((red == green).all() and (green == blue).all())
     if gray:
@@ -137,8 +151,6 @@ def _colours(values: Pixels) -> NDArray[Any]:
         numbers = np.left_shift(red, 2 * bits, dtype=dtype)
         numbers |= np.left_shift(green, bits, dtype=dtype)
         numbers |= blue.astype(dtype)
-    if values.shape[2] == 4 and not values[..., 3].all():
-        numbers = np.where(values[..., 3] > 0, numbers, np.zeros((), numbers.dtype))
     return numbers
 
 

@@ -1,4 +1,4 @@
-"""What a file notes of the size of a pixel -> (dx, dy) in millimetres.
+"""The resolution a file notes -> the size of a pixel, (dx, dy) in millimetres.
 
 TIFF and EXIF use the same numbered tags for the resolution; JFIF and PNG are brought to them.
 """
@@ -22,8 +22,6 @@ INCH, CENTIMETRE = 2, 3
 
 def pixel_size(img: Image.Image) -> PixelSize | None:
     """Return the size of a pixel in millimetres, if the file says it. Pillow's ``info["dpi"]`` may hold invented defaults."""
-    if img.format == "TIFF":
-        return millimetres(img.tag_v2)  # type: ignore[attr-defined]
     if img.info.get("jfif_unit"):
         x, y = img.info["jfif_density"]
         return millimetres({X_RESOLUTION: x, Y_RESOLUTION: y, RESOLUTION_UNIT: INCH if img.info["jfif_unit"] == 1 else CENTIMETRE})
@@ -37,15 +35,15 @@ def millimetres(tags: Mapping[int, Any]) -> PixelSize | None:
     unit = {INCH: 25.4, CENTIMETRE: 10.0}.get(tags.get(RESOLUTION_UNIT, INCH))
     if unit is None or X_RESOLUTION not in tags or Y_RESOLUTION not in tags:
         return None
-    x, y = (_ratio(tags[code]) for code in (X_RESOLUTION, Y_RESOLUTION))
+    x, y = (ratio(tags[code]) for code in (X_RESOLUTION, Y_RESOLUTION))
     return (unit / x, unit / y) if x > 0 and y > 0 else None
 
 
-def _ratio(value: Any) -> float:
+def ratio(value: Any) -> float:
     """Return a resolution as a number: Pillow has its own type for fractions, tifffile a pair; 0 for anything not finite."""
     top, bottom = value if isinstance(value, tuple) else (float(value), 1)
-    ratio = top / bottom if bottom else 0.0
-    return ratio if math.isfinite(ratio) else 0.0
+    number = top / bottom if bottom else 0.0
+    return number if math.isfinite(number) else 0.0
 
 
 def positive_size(dx: Any, dy: Any) -> PixelSize | None:

@@ -31,7 +31,7 @@ def iso_crossings(gray: NDArray[Any], level: float | None, middle: Points, vecto
     Parameters
     ----------
     gray
-        (h, w) bool, integer or float.
+        (h, w) bool, integer or float; NaN where a pixel is not there.
     level
         The gray value of the outline; None is the middle between the two sides nearby.
     middle, axis
@@ -52,14 +52,15 @@ def iso_crossings(gray: NDArray[Any], level: float | None, middle: Points, vecto
     a, b = _values(gray, left), _values(gray, right)
     rising = a > b
     # The sides as they are nearby: the brightest around the brighter pixel, the darkest around the darker one.
-    extremes = [[_around(gray, pixels, pick) for pixels in (left, right)] for pick in (np.maximum, np.minimum)]
+    extremes = [[_around(gray, pixels, pick) for pixels in (left, right)] for pick in (np.fmax, np.fmin)]
     bright = np.where(rising, extremes[0][0], extremes[0][1])
     dark = np.where(rising, extremes[1][1], extremes[1][0])
     wanted = (bright + dark) / 2 if level is None else level
     contrast = np.where(a != b, a - b, 1.0)
     s = np.where(a != b, (wanted - b) / contrast - 0.5, 0.0)
-    shift[at] = np.clip(s, -BOUND, BOUND)
-    slack[at] = np.where(np.abs(a - b) < HARD * (bright - dark), SURE, BOUND)
+    there = ~np.isnan(a - b)  # beside a pixel that is not there, all that is known is that the edge lies between the centres
+    shift[at] = np.where(there, np.clip(s, -BOUND, BOUND), 0.0)
+    slack[at] = np.where(there & (np.abs(a - b) < HARD * (bright - dark)), SURE, BOUND)
     return shift, slack
 
 

@@ -282,7 +282,7 @@ def test_nifti_keeps_stored_values_and_lies_as_it_is_numbered(name, dtype, tmp_p
         i, j = np.indices((6, 9))
         row, column = picture.frame.row_column(np.stack([(i + 0.5) * 0.7, (j + 0.5) * 0.3], axis=-1))
         assert (picture.values[row.astype(int), column.astype(int)] == values[:, :, page]).all()
-        assert picture.notes == {"format": "NIfTI", "pages": 4, "page": page, "axes": "RAS", "spacing": "file"}
+        assert picture.notes == {"format": "NIfTI", "pages": 4, "page": page, "axes": "RAS", "spacing": "file", "units": "mm"}
 
 
 @pytest.mark.usefixtures("nibabel")

@@ -84,19 +84,26 @@ def test_other_colours_are_refused(values):
         label_map(values)
 
 
-def test_transparent_pixels_are_0():
-    values = RNG.integers(1, 256, (9, 9, 4), np.uint8)
-    assert (label_map(values).values == label_map(values[..., :3]).values).all()
-    values[2:5, :, 3] = 0
-    labels = label_map(values).values
-    assert (labels[2:5] == 0).all()
-    assert (labels[5:] == label_map(values[5:, :, :3]).values).all()
+def test_missing_pixels_are_background():
+    values = RNG.integers(1, 256, (9, 9, 3), np.uint8)
+    missing = np.zeros((9, 9), bool)
+    missing[2:5] = True
+    found = label_map(values, missing=missing)
+    assert (found.values[2:5] == 0).all()
+    assert (found.values[5:] == label_map(values[5:]).values).all()
+    assert found.background == 0
 
 
-def test_a_picture_that_is_all_alpha_is_labelled_by_it():
-    values = np.zeros((9, 9, 4), np.uint8)
-    values[..., 3] = RNG.choice([0, 255], (9, 9))
-    assert (label_map(values).values == values[..., 3]).all()
+def test_transparent_is_never_equal_to_a_colour():
+    values = np.repeat(np.arange(6), 6).reshape(6, 6)
+    missing = values == 3
+    for background, transparent, marker in ((0, True, 3), (None, False, 3), (0, False, 0), (4, True, 4)):
+        found = label_map(values, missing=missing, background=background, transparent=transparent)
+        assert found.background == marker
+        assert (found.values == np.where(missing, marker, values)).all()
+    assert label_map(values, labels=[0, 5], missing=missing, transparent=True).background == 1
+    with pytest.raises(ImageError, match="found 3, which is not one"):
+        label_map(values, labels=[3], missing=missing)
 
 
 @pytest.mark.parametrize("dtype", INTEGERS)
