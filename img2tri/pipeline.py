@@ -27,7 +27,7 @@ from img2tri.recipes.conforming import Sizes, conform, trace_outlines, wanted_si
 from img2tri.shapes.periodic.side_labels import check_periodic
 from img2tri.shapes.polygons import enclosed_areas
 from img2tri.shapes.trace.dual_edges import pixel_areas, pixels_beside
-from img2tri.types import Outlines, Picture, Provenance, RecipeMesh
+from img2tri.types import Frame, Outlines, Picture, Provenance, RecipeMesh
 
 PAPER_THRESHOLD, PAPER_STEP = 240, "10px"
 PAPER_SMOOTHING = {"structured": "none", "unstructured": "uniform"}
@@ -78,8 +78,8 @@ def mesh_image(image: Any, *, progress: Callable[[str, float], None] | None = No
 
     tell("labels", 0.1)
     zones = segment(picture, **_with_paper_threshold(o))
-    speck = None if o["min_area"] is None else frame.area("min_area", o["min_area"]) / math.prod(frame.spacing)
-    zones, removed = without_specks(zones, min_area=speck, largest=o["largest"], connectivity=o["connectivity"])
+    specks, holes = (_in_pixels(name, o[name], frame) for name in ("min_area", "fill_holes"))
+    zones, removed = without_specks(zones, min_area=specks, fill_holes=holes, largest=o["largest"], connectivity=o["connectivity"])
     check_periodic(o["periodic"], zones.labels, recipe=o["recipe"], smoothing=o["smoothing"])
 
     tell("outlines", 0.2)
@@ -122,6 +122,13 @@ def _teller(progress: Callable[[str, float], None] | None) -> Callable[[str, flo
     if progress is not None and not callable(progress):
         raise ParameterError(f"progress: expected what can be called with a stage and a fraction, found {shown(progress)}")
     return progress or (lambda *_: None)
+
+
+def _in_pixels(name: str, area: bool | float | str | None, frame: Frame) -> float | None:
+    """Return an area in pixels, infinity for True."""
+    if isinstance(area, bool) or area is None:
+        return math.inf if area else None
+    return frame.area(name, area) / math.prod(frame.spacing)
 
 
 def _with_paper_threshold(o: MeshOptions) -> SegmentOptions:

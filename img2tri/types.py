@@ -176,6 +176,31 @@ class Picture:
 
 
 @dataclass(frozen=True, eq=False)
+class ColourMix:
+    """The colours of an image of which every pixel is one of a few flat colours, or a mix of two: what places the edges between them.
+
+    Attributes
+    ----------
+    values
+        (h, w, c), the pixels.
+    labels
+        (k,) int64, rising, the labels of the flat colours.
+    colours
+        (k, c) float64, the colours.
+    background
+        The label of what is not meshed; one without a colour if there is none.
+    missing
+        (h, w) bool, the pixels that are not there. None: all are.
+    """
+
+    values: NDArray[Any]
+    labels: NDArray[np.int64]
+    colours: NDArray[np.float64]
+    background: int
+    missing: NDArray[np.bool_] | None = None
+
+
+@dataclass(frozen=True, eq=False)
 class Outlines:
     """The outlines of all regions as one network of chains, each shared by the two regions it parts.
 
@@ -232,6 +257,8 @@ class Provenance:
         What was promised: in px, in degrees; None where the recipe promises nothing.
     counted
         What the recipe counted on the way, for the report.
+    notes
+        What was decided while reading, in sentences for the report.
     """
 
     recipe: str
@@ -244,6 +271,7 @@ class Provenance:
     tolerance: float | None = None
     min_angle: float | None = None
     counted: dict[str, Any] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
 
 
 @dataclass(frozen=True, eq=False)

@@ -585,7 +585,7 @@ REFUSED = {
     "text": (np.array([["a"]]), {}, ImageError, "image: expected an array of bool, integer or floating point values"),
     "complex": (np.ones((3, 3), complex), {}, ImageError, "found an array of type complex128"),
     "nothing": (None, {}, ImageError, "image: expected an array"),
-    "NaN": (np.full((3, 3), np.nan), {}, ImageError, "image: expected finite values, found 9 NaN or infinite"),
+    "NaN": (np.full((3, 3), np.nan), {}, ImageError, "image: expected pixels that are there, found only transparent ones, NaN"),
     "infinite": (np.array([[1, np.inf]]), {}, ImageError, "image: expected finite values, found 1 NaN or infinite"),
     "black": (np.zeros((9, 9), bool), {}, ImageError, "image: expected pixels to mesh, found none"),
     "black, gray": (np.zeros((9, 9), np.uint8), {}, ImageError, "image: expected pixels to mesh, found none above the threshold 0"),

@@ -61,6 +61,11 @@ class Report:
         The worst angle and where it is.
     min_angle, narrow, narrow_at
         The least angle promised, the number of triangles with a smaller one, and places of the first of them.
+    removed
+        What was cleaned away: how many ``specks``, ``holes`` and ``pixels``, and the largest of them, ``listed``; how many pixels
+        were ``missing`` in the image, and ``absorbed`` by neighbours.
+    notes
+        One sentence for each thing that was decided while reading the image and might have been meant otherwise.
     warnings
         One line for each promise that is not kept, with its place.
     """
@@ -94,6 +99,8 @@ class Report:
     min_angle: float | None
     narrow: int
     narrow_at: list[tuple[float, float]]
+    removed: dict[str, Any]
+    notes: list[str]
     warnings: list[str]
 
     def _repr_html_(self) -> str:
@@ -138,6 +145,8 @@ def certify(vertices: Floats, triangles: Ints, regions: Ints, frame: Frame, orig
     missing, extra = neighbours(triangles, number, outlines)
     off = regions_off(plane, triangles, number, curves, origin)
     facts: dict[str, Any] = {
+        "removed": origin.counted.get("removed", {}),
+        "notes": origin.notes,
         "hausdorff": distance * frame.pixel,
         "hausdorff_at": _place(frame.world(farthest)),
         "tolerance": None if origin.tolerance is None else origin.tolerance * frame.pixel,

@@ -20,6 +20,7 @@ from img2tri.options.typed import whole_number
 COMMANDS = ("mesh", "view-report", "quality", "app")
 LABEL = r"(-?\d+|0x[\da-fA-F]+|#[\da-fA-F]{6})"
 LABELS = rf"{LABEL}(,{LABEL})*"
+OPEN = {"--labels": LABELS, "--fill-holes": r"[\d.]+(px2)?"}  # options that mean all without a value, and what their values look like
 IMAGES = "files, folders of images, patterns such as scans/*.png; PNG, TIFF, JPEG, BMP and others; - for stdin"
 EXAMPLES = """examples:
   img2tri mesh femur.png -o femur.stl -o femur.vtu --plot femur_mesh.png
@@ -90,13 +91,14 @@ def _commands(parser: ArgumentParser) -> dict[str, ArgumentParser]:
 
 
 def _with_values(argv: Sequence[str]) -> list[str]:
-    """Join ``--labels`` and its list, if one follows; argparse would take the name of an image for it. Without a list it means all."""
+    """Join options that may be without a value and their value, if one follows; argparse would take the name of an image for it."""
     joined: list[str] = []
     for argument in argv:
-        if joined and joined[-1] == "--labels=all" and re.fullmatch(LABELS, argument):
-            joined[-1] = f"--labels={argument}"
+        flag = joined[-1].removesuffix("=all") if joined else ""
+        if flag in OPEN and joined[-1].endswith("=all") and re.fullmatch(OPEN[flag], argument):
+            joined[-1] = f"{flag}={argument}"
         else:
-            joined.append("--labels=all" if argument == "--labels" else argument)
+            joined.append(f"{argument}=all" if argument in OPEN else argument)
     return joined
 
 

@@ -22,7 +22,7 @@ class ReadOptions(TypedDict, total=False):
         float | Sequence[float] | str | None,
         Option(
             None,
-            'Size of a pixel in world units: a number, a pair (dx, dy), or "file", what the file says, in mm.',
+            'Size of a pixel in world units: a number, a pair (dx, dy), or "file", what the file says, in its unit.',
             none="1, or what a DICOM or NIfTI file says",
             typed=typed.pair_or_word,
             sign="S",
@@ -73,12 +73,15 @@ class SegmentOptions(TypedDict, total=False):
     """Options of `raster.labels.segmentation.segment`."""
 
     threshold: Annotated[
-        float | str | None,
+        float | str | Sequence[float] | None,
         Option(
             None,
-            "Gray level on the image's own scale; strictly greater is white and meshed. \"otsu\": Otsu's level.",
-            none="the middle of two values, else Otsu's level; 240 in the paper's recipes",
-            typed=typed.number_or_word,
+            "Gray level on the image's own scale; strictly greater is white and meshed. \"otsu\": Otsu's level.\n\n"
+            '"alpha": the silhouette, all that is opaque. Rising levels, as in [110, 190]: the values between two are a region, label 0 up '
+            "to the first, 1 up to the second, and so on.",
+            none="the silhouette where pixels are transparent, the middle of two values, else Otsu's level; 240 in the paper's recipes",
+            check=o.one_level_or_more,
+            typed=typed.numbers_or_word,
             sign="T",
         ),
     ]
@@ -103,6 +106,32 @@ class SegmentOptions(TypedDict, total=False):
             sign="N",
         ),
     ]
+    colors: Annotated[
+        int | Sequence[int | str | Sequence[int]] | None,
+        Option(
+            None,
+            "Each pixel gets one of a few flat colours: how many to find besides the background, or a list of them.\n\n"
+            "For drawings, screenshots and label maps whose edges are anti-aliased, blurred or JPEG. Each colour is a region, its label "
+            "0xRRGGBB or the gray value; where a pixel is a mix of two, the mix places the edge. In a list colours are such numbers, "
+            "'#rrggbb' or (r, g, b).",
+            none="colours are not looked for",
+            check=o.colours,
+            typed=typed.count_or_colours,
+            sign="N|LIST",
+        ),
+    ]
+    absorb: Annotated[
+        int | Iterable[int] | None,
+        Option(
+            None,
+            "Labels whose pixels are given to their nearest neighbours first: watershed lines, borders, what is not indexed.\n\n"
+            "So regions parted by thin lines touch, and have interfaces. The image is a label map then, as with `labels`.",
+            none="every label keeps its pixels",
+            check=o.one_label_or_more,
+            typed=typed.whole_numbers,
+            sign="LIST",
+        ),
+    ]
     invert: Annotated[bool, Option(False, "Mesh what is dark.", check=o.yes_or_no)]
 
 
@@ -118,6 +147,17 @@ class SpeckOptions(TypedDict, total=False):
             none="nothing is removed",
             check=o.area,
             sign="A",
+        ),
+    ]
+    fill_holes: Annotated[
+        bool | float | str | None,
+        Option(
+            None,
+            "Fill holes, and drop nothing: True fills all, an area, in world units squared or in pixels as 20px2, those smaller than it.",
+            none="holes stay, but for those smaller than `min_area`",
+            check=o.yes_or_area,
+            typed=typed.yes_or_text,
+            sign="[A]",
         ),
     ]
     largest: Annotated[bool, Option(False, "Keep only the largest component of each region.", check=o.yes_or_no)]
@@ -153,7 +193,7 @@ class NameOptions(TypedDict, total=False):
         Option(
             None,
             f"What a world unit is, for files that can tell: {', '.join(UNITS)}.",
-            none="mm with `spacing` from a file, else unknown",
+            none="that of the file with `spacing` from it, mostly mm; else unknown",
             check=o.one_of(*UNITS),
             sign="U",
         ),

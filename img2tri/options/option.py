@@ -6,7 +6,9 @@ only be judged beside the image (whether it has such a label, whether a box lies
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+import itertools
+import re
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,6 +16,8 @@ from img2tri.errors import ParameterError, choice, finite, flag, integer, shown
 from img2tri.options import typed as texts
 
 Check = Callable[[str, Any], Any]
+
+MOST_COLOURS = 256
 
 
 def unchecked(_name: str, value: Any) -> Any:
@@ -98,6 +102,11 @@ def area(name: str, value: Any) -> Any:
     return number if _is_bare(value) else value
 
 
+def yes_or_area(name: str, value: Any) -> Any:
+    """Check for True, False or an area."""
+    return value if isinstance(value, bool) else area(name, value)
+
+
 def _is_bare(value: Any) -> bool:
     return isinstance(value, str) and not value.strip().endswith(("px", "px2", "%"))
 
@@ -128,11 +137,54 @@ def one_label(name: str, value: Any) -> int:
     return label(name, value)
 
 
+def one_label_or_more(name: str, value: Any) -> list[int]:
+    """Check for a label, or several."""
+    from img2tri.raster.labels.label_maps import picked
+
+    return picked(value, name) if isinstance(value, Iterable) else [one_label(name, value)]
+
+
+def one_level_or_more(name: str, value: Any) -> Any:
+    """Check for a number, a word, or rising numbers, of which a list is made."""
+    if isinstance(value, str) or not isinstance(value, Iterable) or getattr(value, "ndim", 1) == 0:
+        if isinstance(value, str) and value not in ("otsu", "alpha"):
+            raise ParameterError(f"{name}: expected a number, 'otsu', 'alpha' or None, found {value!r}")
+        return value if isinstance(value, str) else finite(name, value)
+    levels = [finite(name, level) for level in value]
+    if not levels or any(a >= b for a, b in itertools.pairwise(levels)):
+        raise ParameterError(f"{name}: expected rising numbers, like [110, 190], found {shown(value)}")
+    return levels[0] if len(levels) == 1 else levels
+
+
 def all_or_some(_name: str, value: Any) -> bool | list[int]:
     """Check for True or False, or labels, of which a list is made: an iterator can be read once."""
     from img2tri.raster.labels.label_maps import picked
 
     return value if isinstance(value, bool) else picked(value)
+
+
+def colours(name: str, value: Any) -> int | list[float]:
+    """Check for a count, or a list of colours, of which numbers are made."""
+    if isinstance(value, int) and not isinstance(value, bool):
+        return integer(name, value, least=1, most=MOST_COLOURS)
+    if isinstance(value, (str, bytes, Mapping)) or not isinstance(value, Iterable):
+        raise ParameterError(f"{name}: expected how many colours, or a list like ['#dc2828', 0x28a0dc], found {shown(value)}")
+    listed = [_colour(name, one) for one in value]
+    if not 0 < len(listed) <= MOST_COLOURS or len(set(listed)) < len(listed):
+        raise ParameterError(f"{name}: expected 1 to {MOST_COLOURS} different colours, found {shown(value)}")
+    return listed
+
+
+def _colour(name: str, value: Any) -> float:
+    if isinstance(value, str):
+        if re.fullmatch(r"#[0-9a-fA-F]{6}", value.strip()):
+            return int(value.strip()[1:], 16)
+        raise ParameterError(f"{name}: expected colours like '#dc2828', found {shown(value)}")
+    if hasattr(value, "__len__") and len(value) == 3:
+        red, green, blue = (integer(name, channel, most=255) for channel in value)
+        return red << 16 | green << 8 | blue
+    number = finite(name, value)
+    return int(number) if number.is_integer() else number
 
 
 def edge_lengths(name: str, value: Any) -> Any:

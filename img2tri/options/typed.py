@@ -85,6 +85,39 @@ def all_or_labels(given: str) -> bool | list[int]:
     return True if given == "all" else list(map(label_number, given.split(",")))
 
 
+def numbers_or_word(given: str) -> float | str | tuple[float, ...]:
+    """Return a number, numbers between commas, or the text.
+
+    Examples
+    --------
+    >>> numbers_or_word("110,190"), numbers_or_word("otsu")
+    ((110.0, 190.0), 'otsu')
+    """
+    return comma_separated(given) if "," in given else number_or_word(given)
+
+
+def whole_numbers(given: str) -> list[int]:
+    """Return whole numbers between commas."""
+    return list(map(label_number, given.split(",")))
+
+
+def yes_or_text(given: str) -> bool | str:
+    """Return True for "all", or the text."""
+    return True if given == "all" else given
+
+
+def typed_colours(given: str) -> int | list[int]:
+    """Return a count, or colours between commas: ``#dc2828``, ``0xdc2828`` or numbers.
+
+    Examples
+    --------
+    >>> typed_colours("3"), typed_colours("#dc2828,0xff,80")
+    (3, [14428200, 255, 80])
+    """
+    listed = list(map(label_number, given.split(",")))
+    return listed[0] if given.strip().isdigit() else listed
+
+
 def label_or_none(given: str) -> int | None:
     """Return a label, or None for the word."""
     return None if given.lower() == "none" else label_number(given)

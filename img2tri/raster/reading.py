@@ -70,8 +70,8 @@ def read(
         Its `notes` hold what was found in a file: "format"; "pages" where there are several, and the "page" taken;
         "orientation" (EXIF, 2 to 8) where the image had to be turned; "palette", (n, 3 or 4) uint8, where the values are
         indices into it; "spacing", "file" or the kind of object, where it was not given in numbers, then with "units";
-        "missing", how many pixels are not there; "min_is_white" for TIFFs whose gray values are stored so. For DICOM and NIfTI see `files.dicom` and
-        `files.nifti`.
+        "missing", how many pixels are not there; "min_is_white" for TIFFs whose gray values are stored so. For DICOM and NIfTI
+        see `files.dicom` and `files.nifti`.
 
     Raises
     ------

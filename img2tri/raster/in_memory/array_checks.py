@@ -54,9 +54,7 @@ def pixels(image: object, *, colours: bool = True, name: str = "image") -> Pixel
     # A NaN is the minimum of all it is among, so two numbers tell about all.
     if values.dtype.kind == "f" and not (np.isfinite(values.min()) and np.isfinite(values.max())):
         count = int((~np.isfinite(values)).sum())
-        raise ImageError(
-            f"{name}: expected finite values, found {count} infinite or NaN; replace them by NaN where there is nothing to mesh"
-        )
+        raise ImageError(f"{name}: expected finite values, found {count} NaN or infinite; put NaN where there is nothing to mesh")
     return values
 
 

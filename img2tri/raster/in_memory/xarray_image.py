@@ -15,13 +15,13 @@ import numpy as np
 from img2tri.arrays import Floats
 from img2tri.errors import ImageError
 from img2tri.raster.in_memory.array_checks import Pixels, as_array, pixels
-from img2tri.raster.metadata.geotiff_imagej_ome import LENGTHS
+from img2tri.raster.metadata.geotiff_imagej_ome import LENGTH_UNITS
 from img2tri.raster.metadata.nodata import either, equal_to, present
 from img2tri.types import Frame, Picture
 
 X_NAMES, Y_NAMES = ("x", "lon", "longitude", "easting", "column", "cols"), ("y", "lat", "latitude", "northing", "row", "rows")
 BANDS = ("band", "bands", "channel", "channels", "c", "rgb", "rgba")
-EVEN = 1e-3  # of a spacing: how far coordinates may be off even spaces, which 32 bits need
+EVEN_STEPS = 1e-3  # of a spacing: how far coordinates may be off even spaces, which 32 bits need
 
 
 def is_data_array(image: Any) -> bool:
@@ -73,7 +73,7 @@ def from_data_array(image: Any) -> Picture:
     frame = Frame((h, w), (dx, abs(dy)), (x - dx / 2, lowest - abs(dy) / 2), upward)
     notes: dict[str, Any] = {"format": "DataArray"}
     if knows_its_place(image):
-        unit = LENGTHS.get(str(image.coords[names[1]].attrs.get("units", "")).lower()) if names[1] in image.coords else None
+        unit = LENGTH_UNITS.get(str(image.coords[names[1]].attrs.get("units", "")).lower()) if names[1] in image.coords else None
         notes |= {"spacing": "DataArray"} | ({"units": unit[0]} if unit and unit[1] == 1.0 else {})
     return Picture(
         _contiguous(values), frame, f"DataArray {image.name!r}", notes, None if missing is None else np.ascontiguousarray(missing)
@@ -104,4 +104,4 @@ def _even(image: Any, name: Any) -> tuple[float, float]:
 
 
 def _uneven(places: Floats, step: float) -> bool:
-    return bool((abs(places - places[0] - step * np.arange(len(places))) > EVEN * abs(step)).any())
+    return bool((abs(places - places[0] - step * np.arange(len(places))) > EVEN_STEPS * abs(step)).any())

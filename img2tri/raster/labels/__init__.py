@@ -5,6 +5,8 @@ segmentation          `segment`: which of the ways below a picture takes -> `Seg
 colours_to_gray       colours, palettes and transparency -> one gray value for each pixel
 transparency          the alpha channel -> which pixels are there
 otsu_threshold        gray values -> a mask: a given level, the middle of two values, or Otsu's level
+colour_labels         a few flat colours, counted or listed -> a label map, and the mixes that place the edges
+flat_colours          which colours an image is made of, and which of them a pixel is, or is mixed of
 label_map_check       whether values look like a label map, which is not to be thresholded by mistake
 label_maps            integers or colours -> a label map, and the label that is not meshed (the background)
 cropping              the part of a picture within a box

@@ -1,17 +1,17 @@
 """A drawing of a few flat colours -> a label map, whatever lies between the colours: anti-aliased, blurred or JPEG edges.
 
-A pixel on such an edge is a mix of two colours. Taken for a colour of its own, or for the listed colour that happens to be nearest, it makes
-a thin false region. So the *cores* are found first, blocks of 2 x 2 pixels near one colour. Any other pixel is explained by two colours
-with cores nearby, if it lies between them as colours do that are mixed::
+A pixel on such an edge is a mix of two colours. Taken for a colour of its own, or for the listed colour that happens to be nearest, it
+makes a thin false region. So the *cores* are found first, blocks of 2 x 2 pixels near one colour. Any other pixel is explained by two
+colours with cores nearby, if it lies between them as colours do that are mixed::
 
     A . . . x . . . B      x is near the line from A to B: it gets the colour it is nearer to, never a third one
                   C
 
-and if it is not, it is a thin detail, and gets the nearest colour of all. How much of each colour is in a mix also says where the edge runs;
-see `types.ColourMix`.
+and if it does not, it is a thin detail, and gets the nearest colour of all. How much of each colour is in a mix also says where the edge
+runs, see `types.ColourMix`.
 
 How many colours there are cannot be told from an image; which they are can: they are found among the pixels of even blocks by k-means
-(Lloyd 1982, doi 10.1109/TIT.1982.1056489), begun with those that are frequent and far from the ones before, and no chance.
+(Lloyd 1982, doi 10.1109/TIT.1982.1056489), begun with those that are frequent and far from the ones before, without any chance.
 """
 
 from __future__ import annotations
@@ -24,13 +24,14 @@ from numpy.typing import NDArray
 from img2tri.arrays import Bools, Floats, Ints
 from img2tri.errors import ParameterError
 
-PURE = 0.25  # of the distance to the next colour: how far from its colour a pixel of a core may be
-MIXED = 0.12  # of the distance of two colours: how far off the line between them a mix of them may be
-NEARBY = 2  # pixels: where the two colours of a mix are looked for
-EVEN, APART = 12 / 255, 28 / 255  # of the range: of a block of one colour at most, between two colours at least
-BITS = 5  # per channel, of colours counted to find the frequent ones
-LEAST_PART = 2e-4  # of the even pixels: rarer colours are not found
-ROUNDS = 12  # of k-means
+PURE_COLOUR = 0.25  # of the distance to the next colour: how far from its colour a pixel of a core may be
+MIXED_COLOUR = 0.12  # of the distance of two colours: how far off the line between them a mix of them may be
+CORES_NEARBY = 2  # pixels: where the two colours of a mix are looked for
+EVEN_COLOUR, COLOURS_APART = 12 / 255, 28 / 255  # of the range: of a block of one colour at most, between two colours at least
+BITS_PER_CHANNEL = 5  # per channel, of colours counted to find the frequent ones
+LEAST_COLOUR = 2e-4  # of the even pixels: rarer colours are not found
+K_MEANS_ROUNDS = 12
+MOST_COUNTED = 1_000_000  # pixels looked at to find the colours
 
 
 def find_colours(values: NDArray[Any], count: int, ground: Floats | None, missing: Bools | None) -> Floats:
@@ -58,21 +59,22 @@ def find_colours(values: NDArray[Any], count: int, ground: Floats | None, missin
         If the image has fewer flat colours.
     """
     scale = value_range(values)
-    even = _even_blocks(values, EVEN * scale)
-    even = even if missing is None else even & ~missing
-    pixels = values[even if even.mean() > 0.01 else (np.ones(even.shape, bool) if missing is None else ~missing)].astype(np.float64)
+    even = _even_blocks(values, EVEN_COLOUR * scale)
+    there = np.ones(even.shape, bool) if missing is None else ~missing
+    pixels = values[even & there if (even & there).mean() > 0.01 else there]
+    pixels = pixels[:: max(1, len(pixels) // MOST_COUNTED)].astype(np.float64)
     centres, weights = _histogram(pixels / scale)
     chosen = []
     if ground is not None:
-        at_ground = np.linalg.norm(centres - ground / scale, axis=1) < APART
-        if weights[at_ground].sum() > LEAST_PART:
+        at_ground = np.linalg.norm(centres - ground / scale, axis=1) < COLOURS_APART
+        if weights[at_ground].sum() > LEAST_COLOUR:
             chosen.append(ground / scale)
     wanted = count + len(chosen)
     if not chosen:
         chosen.append(centres[np.argmax(weights)])
     while len(chosen) < wanted:
         far = np.linalg.norm(centres[:, None] - np.array(chosen), axis=2).min(axis=1)
-        score = np.where((far > APART) & (weights > LEAST_PART), weights * far**2, 0.0)
+        score = np.where((far > COLOURS_APART) & (weights > LEAST_COLOUR), weights * far**2, 0.0)
         if not score.max() > 0:
             break
         chosen.append(centres[np.argmax(score)])
@@ -81,7 +83,7 @@ def find_colours(values: NDArray[Any], count: int, ground: Floats | None, missin
     return _frequent(pixels, _k_means(centres, weights, np.array(chosen)) * scale)
 
 
-def nearest(values: NDArray[Any], colours: Floats) -> tuple[Ints, Floats]:
+def nearest_colour(values: NDArray[Any], colours: Floats) -> tuple[Ints, Floats]:
     """Return the number of the nearest colour of each pixel (h, w), and its distance."""
     best, index = np.full(values.shape[:2], np.inf), np.zeros(values.shape[:2], np.int64)
     pixels = values.astype(np.float64)
@@ -103,10 +105,10 @@ def assigned(values: NDArray[Any], colours: Floats) -> tuple[Ints, Floats]:
     >>> assigned(row, np.array([[0, 0, 0], [255, 255, 255], [160, 120, 120]]))[0][1]
     array([0, 0, 0, 1, 1, 1, 1])
     """
-    index, distance = nearest(values, colours)
+    index, distance = nearest_colour(values, colours)
     apart = np.linalg.norm(colours[:, None] - colours, axis=2)
     np.fill_diagonal(apart, np.inf)
-    core = _blocks(index) & (distance <= PURE * apart.min(axis=1)[index])
+    core = _blocks(index) & (distance <= PURE_COLOUR * apart.min(axis=1)[index])
     doubtful = np.flatnonzero(~core)
     if not len(doubtful) or len(colours) < 2:
         return index, distance
@@ -115,8 +117,8 @@ def assigned(values: NDArray[Any], colours: Floats) -> tuple[Ints, Floats]:
     h, w = index.shape
     row, column = np.divmod(doubtful, w)
     present = np.zeros((len(doubtful), len(colours)), bool)
-    for r in range(-NEARBY, NEARBY + 1):
-        for c in range(-NEARBY, NEARBY + 1):
+    for r in range(-CORES_NEARBY, CORES_NEARBY + 1):
+        for c in range(-CORES_NEARBY, CORES_NEARBY + 1):
             at = np.clip(row + r, 0, h - 1), np.clip(column + c, 0, w - 1)
             there = core[at]
             present[there, index[at][there]] = True
@@ -129,7 +131,7 @@ def assigned(values: NDArray[Any], colours: Floats) -> tuple[Ints, Floats]:
         span = colours[j] - colours[i]
         along = np.clip((pixels[here] - colours[i]) @ span / (span @ span), 0, 1)
         beside = np.linalg.norm(pixels[here] - colours[i] - along[:, None] * span, axis=1)
-        better = (beside < MIXED * apart[i, j]) & (beside < off[here])
+        better = (beside < MIXED_COLOUR * apart[i, j]) & (beside < off[here])
         off[here[better]], which[here[better]] = beside[better], np.where(along[better] < 0.5, i, j)
     index[row, column] = which
     return index, distance
@@ -166,15 +168,15 @@ def _grown(block: Bools) -> Bools:
 
 def _histogram(pixels: Floats) -> tuple[Floats, Floats]:
     """Return the mean (n, c) and the share (n,) of the colours in each bin that has any."""
-    steps = np.clip(pixels * (1 << BITS), 0, (1 << BITS) - 1).astype(np.int64)
-    numbers = steps @ (1 << (BITS * np.arange(pixels.shape[1])))
+    steps = np.clip(pixels * (1 << BITS_PER_CHANNEL), 0, (1 << BITS_PER_CHANNEL) - 1).astype(np.int64)
+    numbers = steps @ (1 << (BITS_PER_CHANNEL * np.arange(pixels.shape[1])))
     _, number, count = np.unique(numbers, return_inverse=True, return_counts=True)
     means = np.stack([np.bincount(number, channel) for channel in pixels.T], axis=1) / count[:, None]
     return means, count / len(pixels)
 
 
 def _k_means(points: Floats, weights: Floats, centres: Floats) -> Floats:
-    for _ in range(ROUNDS):
+    for _ in range(K_MEANS_ROUNDS):
         group = np.linalg.norm(points[:, None] - centres, axis=2).argmin(axis=1)
         total = np.bincount(group, weights, len(centres))
         means = np.stack([np.bincount(group, weights * channel, len(centres)) for channel in points.T], axis=1)

@@ -36,7 +36,7 @@ MANY_VALUES = 32  # above them a shading is to be told from labels
 LEAST_JUMPS = 0.1  # of the places where patches meet, in an image of many values
 LEAST_SHARE = 0.002  # of the pixels: values without a patch, such as lines, that are not strays
 SMALLEST = 24  # pixels on a side: less tells nothing about an image that was enlarged
-PART = 64  # rows looked at first
+ROWS_FIRST = 64  # rows looked at first
 
 
 def flat_values(values: NDArray[Any]) -> NDArray[Any] | None:
@@ -71,7 +71,7 @@ def flat_values(values: NDArray[Any]) -> NDArray[Any] | None:
 
 def _has_patches(values: NDArray[Any]) -> bool:
     """Tell whether neighbours in a row are equal often enough; of a large image a few rows say it, most photographs fail here."""
-    rows = values[:: max(1, len(values) // PART)]
+    rows = values[:: max(1, len(values) // ROWS_FIRST)]
     return bool((rows[:, 1:] == rows[:, :-1]).mean() >= LEAST_EQUAL)
 
 

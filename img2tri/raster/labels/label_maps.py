@@ -162,15 +162,15 @@ def label(name: str, value: object, expected: str = "an integer or None") -> int
         raise ParameterError(f"{name}: expected {expected}, found {shown(value)}") from None
 
 
-def picked(labels: object) -> list[int]:
+def picked(labels: object, name: str = "labels") -> list[int]:
     """Return labels given as a list, set, array or iterator, rising, each once."""
-    expected = "True or a list of integers"
+    expected = "True or a list of integers" if name == "labels" else "a list of integers"
     if isinstance(labels, (str, bytes, bytearray, Mapping)) or not isinstance(labels, Iterable) or getattr(labels, "ndim", 1) != 1:
-        raise ParameterError(f"labels: expected {expected}, found {shown(labels)}")
+        raise ParameterError(f"{name}: expected {expected}, found {shown(labels)}")
     values = list(islice(labels, MOST_LABELS + 1))
     if not 0 < len(values) <= MOST_LABELS:
-        raise ParameterError(f"labels: expected {expected}, found {f'more than {MOST_LABELS}' if values else shown(values)}")
-    return sorted({label("labels", value, expected) for value in values})
+        raise ParameterError(f"{name}: expected {expected}, found {f'more than {MOST_LABELS}' if values else shown(values)}")
+    return sorted({label(name, value, expected) for value in values})
 
 
 def _chosen(labels: object, background: int | None) -> list[int]:

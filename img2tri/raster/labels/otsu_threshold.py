@@ -31,13 +31,13 @@ class Level:
     Attributes
     ----------
     value
-        On the image's own scale.
+        A number on the image's own scale; several for regions by level.
     how
         "given"; "otsu"; "middle", between the two values of the image; "uniform", 0 for an image of one value; "mask", for an
-        image of True and False, which is one already.
+        image of True and False, which is one already; "alpha", half of the greatest opacity.
     """
 
-    value: float
+    value: Any
     how: str
 
 

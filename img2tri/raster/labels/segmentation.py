@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -11,6 +12,8 @@ from numpy.typing import NDArray
 
 from img2tri.arrays import Bools
 from img2tri.errors import ImageError, ParameterError
+from img2tri.raster.labels.absorbed_labels import absorb_labels
+from img2tri.raster.labels.colour_labels import label_by_colours
 from img2tri.raster.labels.colours_to_gray import alpha_is_the_picture, to_gray
 from img2tri.raster.labels.label_map_check import flat_values
 from img2tri.raster.labels.label_maps import LabelMap, label_map
@@ -18,9 +21,9 @@ from img2tri.raster.labels.otsu_threshold import Level, binarize, two_valued
 from img2tri.raster.labels.specks_and_holes import Removed, clean
 from img2tri.raster.labels.transparency import alpha_channel, filled, half_opaque, says_what_is_there, transparent
 from img2tri.raster.metadata.nodata import either
-from img2tri.types import Picture
+from img2tri.types import ColourMix, Picture
 
-LISTED = 10  # values in a message
+LISTED_VALUES = 10  # values in a message
 TRANSPARENT = "transparent pixels are not meshed; they are no colour, so that black, 0, is a region where the image has it"
 SILHOUETTE = (
     "the silhouette was meshed, all that is opaque, as some pixels are transparent; labels=True makes each colour a region, "
@@ -41,9 +44,11 @@ class Segmentation:
     threshold
         The level that parted the image, and how it was found; None for label maps.
     gray
-        (h, w) gray values; None where they say no more than the labels: masks, images of two values, label maps.
+        (h, w) gray values, or the colours of which pixels are mixes; None where they say no more than the labels: masks, images of
+        two values, label maps.
     level
-        The gray value of the outline; None is the middle between the two sides, wherever that is.
+        The gray value of the outlines; one for each step from label to label, if there are several; None is the middle between the
+        two sides, wherever that is.
     notes
         What was decided, in sentences for the report.
     """
@@ -51,17 +56,19 @@ class Segmentation:
     labels: NDArray[Any]
     background: int | None
     threshold: Level | None = None
-    gray: NDArray[Any] | None = None
-    level: float | None = None
+    gray: NDArray[Any] | ColourMix | None = None
+    level: float | tuple[float, ...] | None = None
     notes: tuple[str, ...] = ()
 
 
 def segment(
     picture: Picture,
     *,
-    threshold: float | str | None = None,
+    threshold: float | str | Sequence[float] | None = None,
     labels: bool | Iterable[int] | None = None,
     background: int | None = 0,
+    colors: int | Sequence[Any] | None = None,
+    absorb: int | Iterable[int] | None = None,
     invert: bool = False,
 ) -> Segmentation:
     """Find the foreground, label 1, or the regions of a label map. Pixels that are not there, or transparent, are in none.
@@ -71,10 +78,15 @@ def segment(
     picture
         From `read`.
     threshold, invert
-        As for `binarize`; of the foreground only. "alpha" is the silhouette: what is opaque is foreground; None is that too where
-        some pixels are fully transparent.
+        As for `binarize`; of the foreground only. Rising levels: the values between two are a region. "alpha" is the silhouette:
+        what is opaque is foreground; None is that too where some pixels are fully transparent.
     labels, background
-        As for `label_map`; None or False parts foreground from background.
+        As for `label_map`; `labels` None or False parts foreground from background.
+
+    colors
+        As for `label_by_colours`; None: no flat colours are looked for.
+    absorb
+        Labels whose pixels are given to their nearest neighbours first, see `absorb_labels`; the image is a label map then.
 
     Raises
     ------
@@ -94,13 +106,29 @@ def segment(
     gone = either(picture.missing, transparent(alpha))
     if gone is not None and gone.all():
         raise ImageError("image: expected pixels that are there, found only transparent ones, NaN and no data")
+    clear = says_what_is_there(alpha)
+    if colors is not None:
+        _left_out("colors", labels=labels or None, threshold=threshold, invert=invert or None)
+        if absorb is not None:
+            raise ParameterError(
+                "absorb: expected to be left out with colors, each pixel of which gets one of those wanted; leave some out"
+            )
+        return _by_colours(picture, gone, colors, None if clear and background == 0 else background, clear=clear)
+    if absorb is not None and not labels:
+        labels = True
     if labels is not None and labels is not False:
-        for name, value in (("threshold", threshold), ("invert", invert or None)):
-            if value is not None:
-                raise ParameterError(f"{name}: expected to be left out with labels, whose values are regions as they are, found {value!r}")
-        clear = says_what_is_there(alpha)
-        numbers = label_map(_opaque(picture, gone), labels=labels, background=background, missing=gone, transparent=clear)
-        return Segmentation(numbers.values, numbers.background, notes=(TRANSPARENT,) * clear)
+        _left_out("labels", threshold=threshold, invert=invert or None)
+        values, notes = _opaque(picture, gone), (TRANSPARENT,) * clear
+        if absorb is not None:
+            values = label_map(values, background=None).values
+            given = [absorb] if isinstance(absorb, int) else [*absorb]
+            values, count = absorb_labels(values, given, spacing=picture.frame.spacing, missing=gone)
+            notes = (*notes, f"{count:,} pixels of {', '.join(map(str, given))} were given to their nearest neighbours")
+        numbers = label_map(values, labels=labels, background=background, missing=gone, transparent=clear)
+        return Segmentation(numbers.values, numbers.background, notes=notes)
+    if isinstance(threshold, Sequence) and not isinstance(threshold, str):
+        _left_out("several thresholds", invert=invert or None)
+        return _by_levels(picture, gone, threshold, background)
     if threshold == "alpha" or (threshold is None and says_what_is_there(alpha)):
         return _silhouette(alpha, picture.missing, invert=invert)
     if threshold is None:
@@ -108,25 +136,57 @@ def segment(
     return _foreground(picture, gone, threshold=threshold, invert=invert)
 
 
+def _left_out(given: str, **others: Any) -> None:
+    for name, value in others.items():
+        if value is not None:
+            raise ParameterError(f"{name}: expected to be left out with {given}, whose values are regions as they are, found {value!r}")
+
+
+def _by_colours(
+    picture: Picture, gone: Bools | None, colors: int | Sequence[float], background: int | None, *, clear: bool
+) -> Segmentation:
+    """Make each of a few colours a region; edges run where mixes of two of them say."""
+    palette, values = picture.notes.get("palette"), picture.values
+    values = filled(values if palette is None else palette[values], gone)
+    numbers, mix = label_by_colours(values, colors, background=background, missing=gone)
+    listed = ", ".join(map(str, mix.labels[:LISTED_VALUES].tolist())) + (", ..." if len(mix.labels) > LISTED_VALUES else "")
+    notes = (f"each pixel was given one of {len(mix.labels)} colours: {listed}", *(TRANSPARENT,) * clear)
+    return Segmentation(numbers.values, numbers.background, gray=mix, notes=notes)
+
+
+def _by_levels(picture: Picture, gone: Bools | None, levels: Sequence[float], background: int | None) -> Segmentation:
+    """Make the gray values between two levels a region: label 0 up to the first, 1 up to the second, and so on."""
+    gray = _gray(picture, gone)
+    numbers = label_map(np.searchsorted(levels, gray).astype(np.int32), background=background, missing=gone)
+    at = tuple(math.floor(level) + 0.5 if gray.dtype.kind in "iu" else level for level in levels)
+    return Segmentation(numbers.values, numbers.background, Level(tuple(levels), "given"), _with_gaps(gray, gone), at)
+
+
+def _gray(picture: Picture, gone: Bools | None) -> NDArray[Any]:
+    return to_gray(_opaque(picture, gone), palette=picture.notes.get("palette"), min_is_white="min_is_white" in picture.notes)
+
+
+def _with_gaps(gray: NDArray[Any], gone: Bools | None) -> NDArray[Any]:
+    """Return gray values with NaN where no pixel is."""
+    return gray if gone is None else np.where(gone, np.nan, gray)
+
+
 def _foreground(picture: Picture, gone: Bools | None, *, threshold: float | str | None, invert: bool) -> Segmentation:
     """Part an image by its gray values; those of pixels that are not there neither choose the level nor place an edge."""
-    gray = to_gray(_opaque(picture, gone), palette=picture.notes.get("palette"), min_is_white="min_is_white" in picture.notes)
-    if gone is None:
-        mask, chosen = binarize(gray, threshold=threshold, invert=invert)
-        flat = two_valued(gray)
-    else:
-        seen = gray[~gone][None]
-        seen_mask, chosen = binarize(seen, threshold=threshold, invert=invert)
-        flat, mask = two_valued(seen), np.zeros(gray.shape, bool)
-        mask[~gone] = seen_mask[0]
-        gray = np.where(gone, np.nan, gray)
-    if flat or chosen.how not in ("given", "otsu"):
+    gray = _gray(picture, gone)
+    seen = gray if gone is None else gray[~gone][None]
+    white, chosen = binarize(seen, threshold=threshold, invert=invert)
+    mask = white
+    if gone is not None:
+        mask = np.zeros(gray.shape, bool)
+        mask[~gone] = white[0]
+    if two_valued(seen) or chosen.how not in ("given", "otsu"):
         return Segmentation(mask, 0, chosen)
     if chosen.how == "otsu":
-        return Segmentation(mask, 0, chosen, gray)
+        return Segmentation(mask, 0, chosen, _with_gaps(gray, gone))
     # Strictly greater is foreground: of whole numbers the level lies between two.
-    whole = np.issubdtype(picture.values.dtype, np.integer)
-    return Segmentation(mask, 0, chosen, gray, float(np.floor(chosen.value)) + 0.5 if whole else chosen.value)
+    at = math.floor(chosen.value) + 0.5 if gray.dtype.kind in "iu" else chosen.value
+    return Segmentation(mask, 0, chosen, _with_gaps(gray, gone), at)
 
 
 def _silhouette(alpha: NDArray[Any] | None, missing: Bools | None, *, invert: bool) -> Segmentation:
@@ -137,7 +197,7 @@ def _silhouette(alpha: NDArray[Any] | None, missing: Bools | None, *, invert: bo
     mask = (alpha >= chosen.value) != invert
     if missing is not None:
         mask &= ~missing
-    gray = alpha if missing is None else np.where(missing, np.nan, alpha)
+    gray = _with_gaps(alpha, missing)
     notes = (SILHOUETTE,) * (not invert)
     return Segmentation(mask, 0, chosen, notes=notes) if two_valued(alpha) else Segmentation(mask, 0, chosen, gray, chosen.value, notes)
 
@@ -154,7 +214,7 @@ def _check_thresholdable(values: NDArray[Any]) -> None:
     """Refuse to choose a threshold for what looks like a label map."""
     found = flat_values(values)
     if found is not None:
-        listed = ", ".join(map(str, found[:LISTED].tolist())) + (", ..." if len(found) > LISTED else "")
+        listed = ", ".join(map(str, found[:LISTED_VALUES].tolist())) + (", ..." if len(found) > LISTED_VALUES else "")
         raise ImageError(
             f"image: expected a mask or gray values, found what looks like a label map, {len(found)} flat values that meet without "
             f"a transition ({listed}); labels=True makes each value a region of its own, "
@@ -162,8 +222,10 @@ def _check_thresholdable(values: NDArray[Any]) -> None:
         )
 
 
-def without_specks(found: Segmentation, *, min_area: float | None, largest: bool, connectivity: int) -> tuple[Segmentation, Removed]:
-    """Remove specks and small holes, or all but the largest components, as `clean` does; `min_area` in pixels.
+def without_specks(
+    found: Segmentation, *, min_area: float | None, fill_holes: float | None = None, largest: bool, connectivity: int
+) -> tuple[Segmentation, Removed]:
+    """Remove specks and small holes, or all but the largest components, as `clean` does; areas in pixels.
 
     Examples
     --------
@@ -171,5 +233,7 @@ def without_specks(found: Segmentation, *, min_area: float | None, largest: bool
     >>> found.labels.any(), removed["specks"]
     (np.False_, 3)
     """
-    labels, removed = clean(LabelMap(found.labels, found.background), min_area=min_area, largest=largest, connectivity=connectivity)
+    labels, removed = clean(
+        LabelMap(found.labels, found.background), min_area=min_area, fill_holes=fill_holes, largest=largest, connectivity=connectivity
+    )
     return replace(found, labels=labels.values, background=labels.background), removed

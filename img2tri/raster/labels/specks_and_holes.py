@@ -39,7 +39,14 @@ class Removed(TypedDict):
     listed: list[dict[str, int]]
 
 
-def clean(labels: LabelMap, *, min_area: float | None = None, largest: bool = False, connectivity: int = 4) -> tuple[LabelMap, Removed]:
+def clean(
+    labels: LabelMap,
+    *,
+    min_area: float | None = None,
+    fill_holes: float | None = None,
+    largest: bool = False,
+    connectivity: int = 4,
+) -> tuple[LabelMap, Removed]:
     """Remove the components of a label map that are too small to be meant.
 
     Parameters
@@ -49,6 +56,9 @@ def clean(labels: LabelMap, *, min_area: float | None = None, largest: bool = Fa
     min_area
         In pixels: components of fewer pixels, of regions and of the background, become part of a neighbour. Those at the
         frame of the image do too. None: all are kept.
+    fill_holes
+        In pixels: holes of fewer pixels, components of the background that do not reach the frame, become part of a neighbour; infinity
+        fills all. None: only those that `min_area` fills.
     largest
         Keep only the largest component of each region, of several equally large ones the first. The others become
         background, or part of a neighbour if there is no background. Holes are not filled.
@@ -87,14 +97,17 @@ def clean(labels: LabelMap, *, min_area: float | None = None, largest: bool = Fa
     if connectivity not in (4, 8):
         raise ParameterError(f"connectivity: expected 4 or 8, found {shown(connectivity)}")
     values, removed = labels.values, Removed(specks=0, holes=0, pixels=0, listed=[])
-    steps = [limit] * (limit > 1) + [None] * bool(largest)
+    holes = 0.0 if fill_holes is None or labels.background is None else fill_holes * (1 - AREA_ROUNDING)
+    steps: list[tuple[str, float]] = (
+        [("holes", holes)] * (holes > 1) + [("specks", limit)] * (limit > 1) + [("largest", 0.0)] * bool(largest)
+    )
     changed = True
     while changed:
         # A removal may part another component where it was joined through a corner; hardly any image needs a second turn.
         changed = False
-        for least in steps:
+        for what, least in steps:
             parts = find_components(values, background=labels.background, connectivity=connectivity)
-            number = _numbers_after(parts, least, labels.background, connectivity)
+            number = _numbers_after(parts, what, least, labels.background, connectivity, values.shape)
             if (number != parts.number).any():
                 changed = True
                 removed = _added(removed, parts, number, values.shape[1])
@@ -102,14 +115,28 @@ def clean(labels: LabelMap, *, min_area: float | None = None, largest: bool = Fa
     return (LabelMap(values, labels.background) if removed["pixels"] else labels), removed
 
 
-def _numbers_after(parts: Components, least: float | None, background: int | None, connectivity: int) -> Ints:
-    """Return the label each component has after the removal of those with an area below `least`; None: of all but the largest."""
-    keep = _largest(parts) if least is None else parts.area >= least
+def _numbers_after(parts: Components, what: str, least: float, background: int | None, connectivity: int, shape: tuple[int, ...]) -> Ints:
+    """Return the label each component has after the removal of holes, or of all, with an area below `least`, or of all but the largest."""
+    if what == "largest":
+        keep = _largest(parts)
+    elif what == "holes":
+        keep = (parts.number != 0) | (parts.area >= least) | _at_frame(parts, shape)
+    else:
+        keep = parts.area >= least
     if keep.all():
         return parts.number
-    if least is None and background is not None:
+    if what == "largest" and background is not None:
         return np.where(keep, parts.number, 0)
-    return _absorbed(parts, keep, np.inf if least is None else least, connectivity)
+    return _absorbed(parts, keep, least, connectivity)
+
+
+def _at_frame(parts: Components, shape: tuple[int, ...]) -> Bools:
+    """Tell which components reach the frame of the image."""
+    h, w = shape
+    row, column = np.divmod(parts.start, w)
+    at_frame = np.zeros(len(parts.area), bool)
+    at_frame[parts.component[(row == 0) | (row == h - 1) | (column == 0) | (column + parts.length == w)]] = True
+    return at_frame
 
 
 def _largest(parts: Components) -> Bools:

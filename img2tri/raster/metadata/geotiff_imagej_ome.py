@@ -24,7 +24,7 @@ PROJECTED, PIXEL_IS_POINT = 1, 2
 GEO_UNITS = {9001: "m", 9002: "ft", 9003: "ft", 0: "m"}
 
 # Names of units -> unit of img2tri, and how many of it.
-LENGTHS = {
+LENGTH_UNITS = {
     "um": ("um", 1.0), "µm": ("um", 1.0), "μm": ("um", 1.0), "micron": ("um", 1.0), "microns": ("um", 1.0), "micrometer": ("um", 1.0),
     "\\u00b5m": ("um", 1.0), "nm": ("um", 1e-3), "å": ("um", 1e-4), "angstrom": ("um", 1e-4), "pm": ("um", 1e-6), "mm": ("mm", 1.0),
     "millimeter": ("mm", 1.0), "cm": ("cm", 1.0), "m": ("m", 1.0), "meter": ("m", 1.0), "km": ("m", 1000.0), "inch": ("in", 1.0),
@@ -33,7 +33,7 @@ LENGTHS = {
 
 
 @dataclass(frozen=True)
-class Place:
+class FilePlace:
     """Where a file says its image lies.
 
     Attributes
@@ -51,18 +51,17 @@ class Place:
     corner: tuple[float, float] | None = None
 
 
-def place_of_tiff(tags: Mapping[int, Any], height: int) -> Place:
+def place_of_tiff(tags: Mapping[int, Any], height: int) -> FilePlace:
     r"""Return where a TIFF of `height` rows says its image lies: GeoTIFF before ImageJ and OME, these before the resolution tags.
 
     Examples
     --------
     >>> place_of_tiff({33550: (30.0, 30.0, 0.0), 33922: (0, 0, 0, 500000.0, 4649776.0, 0)}, 60)
-    Place(size=(30.0, 30.0), unit='m', corner=(500000.0, 4647976.0))
+    FilePlace(size=(30.0, 30.0), unit='m', corner=(500000.0, 4647976.0))
     >>> place_of_tiff({270: "ImageJ=1.54\nunit=um\n", 282: (1000, 103), 283: (1000, 103)}, 60)
-    Place(size=(0.103, 0.103), unit='um', corner=None)
+    FilePlace(size=(0.103, 0.103), unit='um', corner=None)
     """
-    description = tags.get(DESCRIPTION, "")
-    description = description.decode("utf-8", "replace") if isinstance(description, bytes) else str(description)
+    description = _description(tags)
     if GEO_KEYS in tags or PIXEL_SCALE in tags or MATRIX in tags:
         return _geotiff(tags, height)
     if description.startswith("ImageJ="):
@@ -71,10 +70,20 @@ def place_of_tiff(tags: Mapping[int, Any], height: int) -> Place:
         found = _ome(description)
     else:
         found = None
-    return found or Place(millimetres(tags))
+    return found or FilePlace(millimetres(tags))
 
 
-def _geotiff(tags: Mapping[int, Any], height: int) -> Place:
+def _description(tags: Mapping[int, Any]) -> str:
+    """Return the description of a TIFF, in UTF-8 as all write it today, though the format and so Pillow know of ASCII only."""
+    noted = tags.get(DESCRIPTION, "")
+    raw = noted if isinstance(noted, bytes) else str(noted).encode("latin-1", "ignore")
+    try:
+        return raw.decode()
+    except UnicodeDecodeError:
+        return raw.decode("latin-1")
+
+
+def _geotiff(tags: Mapping[int, Any], height: int) -> FilePlace:
     keys = [int(n) for n in tags.get(GEO_KEYS, ())]
     known = {keys[i]: keys[i + 3] for i in range(4, len(keys) - 3, 4) if keys[i + 1] == 0}
     if MATRIX in tags and len(tags[MATRIX]) >= 8:
@@ -88,32 +97,32 @@ def _geotiff(tags: Mapping[int, Any], height: int) -> Place:
         size = None
     unit = GEO_UNITS.get(known.get(LINEAR_UNITS, 0)) if known.get(MODEL_TYPE, PROJECTED) == PROJECTED else None
     if size is None:
-        return Place(None, unit)
+        return FilePlace(None, unit)
     half = 0.5 if known.get(RASTER_TYPE) == PIXEL_IS_POINT else 0.0
-    return Place(size, unit, (x - half * size[0], y + (half - height) * size[1]))
+    return FilePlace(size, unit, (x - half * size[0], y + (half - height) * size[1]))
 
 
-def _imagej(description: str, tags: Mapping[int, Any]) -> Place | None:
+def _imagej(description: str, tags: Mapping[int, Any]) -> FilePlace | None:
     match = re.search(r"^unit=(.+)$", description, re.MULTILINE)
-    length = LENGTHS.get(match[1].strip().lower()) if match else None
+    length = LENGTH_UNITS.get(match[1].strip().lower()) if match else None
     if length is None or X_RESOLUTION not in tags or Y_RESOLUTION not in tags:
         return None
     x, y = ratio(tags[X_RESOLUTION]), ratio(tags[Y_RESOLUTION])
-    return Place(_rounded(length[1] / x, length[1] / y), length[0]) if x > 0 and y > 0 else None
+    return FilePlace(_rounded(length[1] / x, length[1] / y), length[0]) if x > 0 and y > 0 else None
 
 
-def _ome(description: str) -> Place | None:
+def _ome(description: str) -> FilePlace | None:
     sizes, units = [], []
     for axis in "XY":
         size = re.search(rf'\bPhysicalSize{axis}="([^"]+)"', description)
         unit = re.search(rf'\bPhysicalSize{axis}Unit="([^"]+)"', description)
-        length = LENGTHS.get(unit[1].lower()) if unit else LENGTHS["um"]
+        length = LENGTH_UNITS.get(unit[1].lower()) if unit else LENGTH_UNITS["um"]
         if size is None or length is None:
             return None
         sizes.append(float(size[1]) * length[1])
         units.append(length[0])
     found = positive_size(*sizes)
-    return Place(_rounded(*found), units[0]) if found and units[0] == units[1] else None
+    return FilePlace(_rounded(*found), units[0]) if found and units[0] == units[1] else None
 
 
 def _rounded(dx: float, dy: float) -> PixelSize:

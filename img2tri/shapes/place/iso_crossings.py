@@ -25,7 +25,9 @@ SURE = 0.15  # of the dual edge: how far smoothing may shift a crossing whose pl
 HARD = 0.98  # contrast of two pixels, relative to that of their sides, from which an edge is hard
 
 
-def iso_crossings(gray: NDArray[Any], level: float | None, middle: Points, vector: Points, frame: Frame) -> tuple[Floats, Floats]:
+def iso_crossings(
+    gray: NDArray[Any], level: float | Floats | None, middle: Points, vector: Points, frame: Frame
+) -> tuple[Floats, Floats]:
     """Place crossings by gray values.
 
     Parameters
@@ -33,7 +35,7 @@ def iso_crossings(gray: NDArray[Any], level: float | None, middle: Points, vecto
     gray
         (h, w) bool, integer or float; NaN where a pixel is not there.
     level
-        The gray value of the outline; None is the middle between the two sides nearby.
+        The gray value of the outline, or one (k,) for each crossing; None is the middle between the two sides nearby.
     middle, axis
         (n,) middle and direction of the dual_edges, from the pixel centre on the right to the one on the left; 0 where a point has none.
     frame
@@ -48,14 +50,14 @@ def iso_crossings(gray: NDArray[Any], level: float | None, middle: Points, vecto
     """
     shift, slack = np.zeros(len(middle)), np.full(len(middle), BOUND)
     at = np.flatnonzero(vector)
-    left, right = _pixels(middle[at] + vector[at] / 2, frame), _pixels(middle[at] - vector[at] / 2, frame)
+    left, right = pixels_at(middle[at] + vector[at] / 2, frame), pixels_at(middle[at] - vector[at] / 2, frame)
     a, b = _values(gray, left), _values(gray, right)
     rising = a > b
     # The sides as they are nearby: the brightest around the brighter pixel, the darkest around the darker one.
     extremes = [[_around(gray, pixels, pick) for pixels in (left, right)] for pick in (np.fmax, np.fmin)]
     bright = np.where(rising, extremes[0][0], extremes[0][1])
     dark = np.where(rising, extremes[1][1], extremes[1][0])
-    wanted = (bright + dark) / 2 if level is None else level
+    wanted = (bright + dark) / 2 if level is None else level[at] if isinstance(level, np.ndarray) else level
     contrast = np.where(a != b, a - b, 1.0)
     s = np.where(a != b, (wanted - b) / contrast - 0.5, 0.0)
     there = ~np.isnan(a - b)  # beside a pixel that is not there, all that is known is that the edge lies between the centres
@@ -64,7 +66,7 @@ def iso_crossings(gray: NDArray[Any], level: float | None, middle: Points, vecto
     return shift, slack
 
 
-def _pixels(centres: Points, frame: Frame) -> tuple[Ints, Ints]:
+def pixels_at(centres: Points, frame: Frame) -> tuple[Ints, Ints]:
     """Row and column of the pixels with these centres."""
     rows, columns = frame.row_column(frame.world(as_rows(centres)))
     return rows.astype(np.int64), columns.astype(np.int64)

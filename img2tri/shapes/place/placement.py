@@ -16,16 +16,16 @@ from numpy.typing import NDArray
 from img2tri.arrays import Floats, Points, cross
 from img2tri.shapes.place.constrained_smoothing import BoundedChains, restore_swept_areas, swept_areas, widest_fitting_spline
 from img2tri.shapes.place.corners import find_corners
-from img2tri.shapes.place.iso_crossings import iso_crossings
+from img2tri.shapes.place.known_crossings import Level, known_crossings
 from img2tri.shapes.trace.crack_edges import CrackEdges
 from img2tri.shapes.trace.dual_edges import BOUND, DualEdges, cut_chains, lay_out
-from img2tri.types import Frame, Outlines
+from img2tri.types import ColourMix, Frame, Outlines
 
 NODE_PASSES = 4  # of averaging along the chains, after which each node is put where they lead
 
 
 def place_outlines(
-    crack_edges: CrackEdges, frame: Frame, *, gray: NDArray[Any] | None = None, level: float | None = None, corners: bool = True
+    crack_edges: CrackEdges, frame: Frame, *, gray: NDArray[Any] | ColourMix | None = None, level: Level = None, corners: bool = True
 ) -> tuple[Outlines, DualEdges]:
     """Return the dense outlines, in the plane of `frame`, and the dual edges their points lie on.
 
@@ -36,14 +36,15 @@ def place_outlines(
     frame
         Where the image lies.
     gray, level
-        (h, w) gray values and the level of the outline among them, see `iso_crossings`; None: the label map is all there is.
+        (h, w) gray values, or what pixels are mixed of, and the level of the outline, see `known_crossings`; None: the label map is all
+        there is.
     corners
         True: corners stay sharp; False: they are rounded as all else is.
     """
     dual_edges = lay_out(crack_edges, frame)
     if not len(dual_edges.crossed):
         return dual_edges.outlines(dual_edges.middle), dual_edges
-    shift, slack = _known_shifts(dual_edges, frame, gray, level)
+    shift, slack = known_crossings(dual_edges, frame, gray, level)
     if corners:
         bends, sharp = find_corners(
             _bounded(dual_edges, dual_edges.middle, shift, slack), dual_edges.corner_after, BOUND * dual_edges.pixel
@@ -53,7 +54,7 @@ def place_outlines(
         bends, sharp, at = bends[once], sharp[once], at[once]
     if corners and len(bends):
         dual_edges = cut_chains(dual_edges, bends, frame)
-        shift, slack = _known_shifts(dual_edges, frame, gray, level)
+        shift, slack = known_crossings(dual_edges, frame, gray, level)
     points = _place_nodes(dual_edges)
     if corners:
         points[len(dual_edges.crossed) + np.searchsorted(dual_edges.node_corner, at)] = sharp
@@ -66,13 +67,6 @@ def place_outlines(
     bounded, shift = replace(bounded, points=np.where(ends, points, bounded.points)), np.where(ends, 0.0, shift)
     shift = restore_swept_areas(bounded, shift, _wanted_areas(bounded, dual_edges, slack))
     return dual_edges.outlines(bounded.points + shift * dual_edges.vector), dual_edges
-
-
-def _known_shifts(dual_edges: DualEdges, frame: Frame, gray: NDArray[Any] | None, level: float | None) -> tuple[Floats, Floats]:
-    """Where each point lies on its dual edge as far as is known, and how far it may be shifted from there."""
-    if gray is None:
-        return np.zeros(len(dual_edges.middle)), np.full(len(dual_edges.middle), BOUND)
-    return iso_crossings(gray, level, dual_edges.middle, dual_edges.vector, frame)
 
 
 def _bounded(dual_edges: DualEdges, points: Points, shift: Floats, slack: Floats) -> BoundedChains:
