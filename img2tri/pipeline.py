@@ -104,7 +104,7 @@ def mesh_image(image: Any, *, progress: Callable[[str, float], None] | None = No
         Provenance(
             o["recipe"], kept, kept | _chosen(o, picture, zones, sizes, within), outlines, *pixels_beside(dual_edges),
             areas=pixel_areas(dual_edges) if zones.gray is None else enclosed_areas(outlines),  # gray values may place the outlines
-            counted={**made.counted, "removed": removed}, notes=decisions(picture, zones),
+            counted={**made.counted, "removed": {**removed, **zones.counted}}, notes=decisions(picture, zones),
             tolerance=within if o["recipe"] == "conforming" else None, min_angle=o["min_angle"] if o["recipe"] == "conforming" else None,
         ),
     )  # fmt: skip

@@ -115,8 +115,8 @@ class SegmentOptions(TypedDict, total=False):
             "0xRRGGBB or the gray value; where a pixel is a mix of two, the mix places the edge. In a list colours are such numbers, "
             "'#rrggbb' or (r, g, b).",
             none="colours are not looked for",
-            check=o.colours,
-            typed=typed.count_or_colours,
+            check=o.count_or_colours,
+            typed=typed.typed_colours,
             sign="N|LIST",
         ),
     ]

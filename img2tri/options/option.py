@@ -163,7 +163,7 @@ def all_or_some(_name: str, value: Any) -> bool | list[int]:
     return value if isinstance(value, bool) else picked(value)
 
 
-def colours(name: str, value: Any) -> int | list[float]:
+def count_or_colours(name: str, value: Any) -> int | list[float]:
     """Check for a count, or a list of colours, of which numbers are made."""
     if isinstance(value, int) and not isinstance(value, bool):
         return integer(name, value, least=1, most=MOST_COLOURS)

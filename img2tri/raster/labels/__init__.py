@@ -9,6 +9,7 @@ colour_labels         a few flat colours, counted or listed -> a label map, and 
 flat_colours          which colours an image is made of, and which of them a pixel is, or is mixed of
 label_map_check       whether values look like a label map, which is not to be thresholded by mistake
 label_maps            integers or colours -> a label map, and the label that is not meshed (the background)
+absorbed_labels       thin separators: the pixels of some labels given to their nearest neighbours
 cropping              the part of a picture within a box
 connected_components  the pieces of each region that hang together, and how they touch
 specks_and_holes      small components dropped, small holes filled, or only the largest component of each region kept

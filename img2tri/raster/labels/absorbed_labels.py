@@ -85,4 +85,4 @@ def _voted(labels: NDArray[Any], takers: Bools, at: Ints) -> tuple[NDArray[Any],
     votes = np.stack([(there & there[k] & (candidate == candidate[k])).sum(axis=0) for k in range(8)])
     most = (votes == votes.max(axis=0)) & there
     lowest = np.where(most, candidate, np.iinfo(labels.dtype).max).min(axis=0)
-    return lowest, there.any(axis=0)
+    return lowest, np.asarray(there.any(axis=0))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,7 @@ from img2tri.raster.labels.label_map_check import flat_values
 from img2tri.raster.labels.label_maps import LabelMap, label_map
 from img2tri.raster.labels.otsu_threshold import Level, binarize, two_valued
 from img2tri.raster.labels.specks_and_holes import Removed, clean
-from img2tri.raster.labels.transparency import alpha_channel, filled, half_opaque, says_what_is_there, transparent
+from img2tri.raster.labels.transparency import alpha_channel, half_opaque, says_what_is_there, transparent, without_hidden
 from img2tri.raster.metadata.nodata import either
 from img2tri.types import ColourMix, Picture
 
@@ -51,6 +51,8 @@ class Segmentation:
         two sides, wherever that is.
     notes
         What was decided, in sentences for the report.
+    counted
+        How many pixels are "missing", and how many were "absorbed".
     """
 
     labels: NDArray[Any]
@@ -59,6 +61,7 @@ class Segmentation:
     gray: NDArray[Any] | ColourMix | None = None
     level: float | tuple[float, ...] | None = None
     notes: tuple[str, ...] = ()
+    counted: dict[str, int] = field(default_factory=dict)
 
 
 def segment(
@@ -108,32 +111,42 @@ def segment(
         raise ImageError("image: expected pixels that are there, found only transparent ones, NaN and no data")
     clear = says_what_is_there(alpha)
     if colors is not None:
-        _left_out("colors", labels=labels or None, threshold=threshold, invert=invert or None)
-        if absorb is not None:
-            raise ParameterError(
-                "absorb: expected to be left out with colors, each pixel of which gets one of those wanted; leave some out"
-            )
-        return _by_colours(picture, gone, colors, None if clear and background == 0 else background, clear=clear)
-    if absorb is not None and not labels:
-        labels = True
-    if labels is not None and labels is not False:
+        _left_out("colors", labels=labels or None, absorb=absorb, threshold=threshold, invert=invert or None)
+        found = _by_colours(picture, gone, colors, None if clear and background == 0 else background, clear=clear)
+    elif labels or absorb is not None:
         _left_out("labels", threshold=threshold, invert=invert or None)
-        values, notes = _opaque(picture, gone), (TRANSPARENT,) * clear
-        if absorb is not None:
-            values = label_map(values, background=None).values
-            given = [absorb] if isinstance(absorb, int) else [*absorb]
-            values, count = absorb_labels(values, given, spacing=picture.frame.spacing, missing=gone)
-            notes = (*notes, f"{count:,} pixels of {', '.join(map(str, given))} were given to their nearest neighbours")
-        numbers = label_map(values, labels=labels, background=background, missing=gone, transparent=clear)
-        return Segmentation(numbers.values, numbers.background, notes=notes)
-    if isinstance(threshold, Sequence) and not isinstance(threshold, str):
+        found = _by_labels(picture, gone, labels or True, background, absorb, clear=clear)
+    elif isinstance(threshold, Sequence) and not isinstance(threshold, str):
         _left_out("several thresholds", invert=invert or None)
-        return _by_levels(picture, gone, threshold, background)
-    if threshold == "alpha" or (threshold is None and says_what_is_there(alpha)):
-        return _silhouette(alpha, picture.missing, invert=invert)
-    if threshold is None:
-        _check_thresholdable(filled(picture.values, gone))
-    return _foreground(picture, gone, threshold=threshold, invert=invert)
+        found = _by_levels(picture, gone, threshold, background)
+    elif threshold == "alpha" or (threshold is None and clear):
+        found = _silhouette(alpha, picture.missing, invert=invert)
+    else:
+        if threshold is None:
+            _check_thresholdable(without_hidden(picture.values, gone))
+        found = _foreground(picture, gone, threshold=threshold, invert=invert)
+    missing = 0 if picture.missing is None else int(np.count_nonzero(picture.missing))
+    return replace(found, counted={"missing": missing} | found.counted)
+
+
+def _by_labels(
+    picture: Picture,
+    gone: Bools | None,
+    labels: bool | Iterable[int],
+    background: int | None,
+    absorb: int | Iterable[int] | None,
+    *,
+    clear: bool,
+) -> Segmentation:
+    """Make each label a region, after some gave their pixels to their neighbours."""
+    values, notes, counted = _opaque(picture, gone), (TRANSPARENT,) * clear, {}
+    if absorb is not None:
+        given = [absorb] if isinstance(absorb, int) else [*absorb]
+        values = label_map(values, background=None).values
+        values, counted["absorbed"] = absorb_labels(values, given, spacing=picture.frame.spacing, missing=gone)
+        notes = (*notes, f"{counted['absorbed']:,} pixels of {', '.join(map(str, given))} were given to their nearest neighbours")
+    numbers = label_map(values, labels=labels, background=background, missing=gone, transparent=clear)
+    return Segmentation(numbers.values, numbers.background, notes=notes, counted=counted)
 
 
 def _left_out(given: str, **others: Any) -> None:
@@ -147,7 +160,7 @@ def _by_colours(
 ) -> Segmentation:
     """Make each of a few colours a region; edges run where mixes of two of them say."""
     palette, values = picture.notes.get("palette"), picture.values
-    values = filled(values if palette is None else palette[values], gone)
+    values = without_hidden(values if palette is None else palette[values], gone)
     numbers, mix = label_by_colours(values, colors, background=background, missing=gone)
     listed = ", ".join(map(str, mix.labels[:LISTED_VALUES].tolist())) + (", ..." if len(mix.labels) > LISTED_VALUES else "")
     notes = (f"each pixel was given one of {len(mix.labels)} colours: {listed}", *(TRANSPARENT,) * clear)
@@ -207,7 +220,7 @@ def _opaque(picture: Picture, gone: Bools | None) -> NDArray[Any]:
     values = picture.values
     if says_what_is_there(alpha_channel(picture)) and values.ndim == 3 and not alpha_is_the_picture(values):
         values = values[..., :3]
-    return filled(values, gone)
+    return without_hidden(values, gone)
 
 
 def _check_thresholdable(values: NDArray[Any]) -> None:

@@ -46,7 +46,7 @@ def transparent(alpha: NDArray[Any] | None) -> Bools | None:
     return alpha < half_opaque(alpha) if alpha is not None and says_what_is_there(alpha) else None
 
 
-def filled(values: Pixels, missing: Bools | None) -> Pixels:
+def without_hidden(values: Pixels, missing: Bools | None) -> Pixels:
     """Return values with those of a pixel that is there where there is none, so that no value comes in that cannot be seen."""
     if missing is None or missing.all():
         return values

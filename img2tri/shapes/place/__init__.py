@@ -3,7 +3,9 @@
 In the order of the flow:
 
 placement              Dual edges -> dense outlines, by the files below.
+known_crossings        What an image says of the places of its outlines -> where each crossing lies, by one of the next two.
 iso_crossings          Gray values -> where on its dual edge each crossing lies, and how surely.
+colour_crossings       Pixels mixed of two flat colours -> where each crossing lies, and how surely.
 corners                Where an outline has a corner, and where exactly it is.
 constrained_smoothing  Each crossing onto the widest smoothing spline that fits its bounds; then each chain to its area.
 smoothing_splines      The smooth curve of a scale through the points of chains.

@@ -25,9 +25,7 @@ SURE = 0.15  # of the dual edge: how far smoothing may shift a crossing whose pl
 HARD = 0.98  # contrast of two pixels, relative to that of their sides, from which an edge is hard
 
 
-def iso_crossings(
-    gray: NDArray[Any], level: float | Floats | None, middle: Points, vector: Points, frame: Frame
-) -> tuple[Floats, Floats]:
+def iso_crossings(gray: NDArray[Any], level: float | Floats | None, middle: Points, vector: Points, frame: Frame) -> tuple[Floats, Floats]:
     """Place crossings by gray values.
 
     Parameters

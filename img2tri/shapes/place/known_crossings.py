@@ -1,7 +1,7 @@
 """What an image says of the places of its outlines, beside its labels -> where each point lies as far as is known, and how surely.
 
-One level, no level or none at all is for `iso_crossings` or nothing to know; with several levels each outline has that between its two sides;
-of a drawing of flat colours `colour_crossings` knows.
+Gray values with one level, or without one, are for `iso_crossings`; with several levels each outline has that between its two sides. What
+pixels of a drawing are mixed of is for `colour_crossings`.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from img2tri.shapes.place.iso_crossings import iso_crossings
 from img2tri.shapes.trace.dual_edges import BOUND, DualEdges
 from img2tri.types import ColourMix, Frame
 
-Level = float | tuple[float, ...] | None
+OutlineLevel = float | tuple[float, ...] | None
 
 
 def known_crossings(
-    dual_edges: DualEdges, frame: Frame, gray: NDArray[Any] | ColourMix | None, level: Level
+    dual_edges: DualEdges, frame: Frame, gray: NDArray[Any] | ColourMix | None, level: OutlineLevel
 ) -> tuple[Floats, Floats]:
     """Return where each point lies on its dual edge as far as is known, and how far it may be shifted from there.
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from img2tri.arrays import Floats, Points, cross
 from img2tri.shapes.place.constrained_smoothing import BoundedChains, restore_swept_areas, swept_areas, widest_fitting_spline
 from img2tri.shapes.place.corners import find_corners
-from img2tri.shapes.place.known_crossings import Level, known_crossings
+from img2tri.shapes.place.known_crossings import OutlineLevel, known_crossings
 from img2tri.shapes.trace.crack_edges import CrackEdges
 from img2tri.shapes.trace.dual_edges import BOUND, DualEdges, cut_chains, lay_out
 from img2tri.types import ColourMix, Frame, Outlines
@@ -25,7 +25,7 @@ NODE_PASSES = 4  # of averaging along the chains, after which each node is put w
 
 
 def place_outlines(
-    crack_edges: CrackEdges, frame: Frame, *, gray: NDArray[Any] | ColourMix | None = None, level: Level = None, corners: bool = True
+    crack_edges: CrackEdges, frame: Frame, *, gray: NDArray[Any] | ColourMix | None = None, level: OutlineLevel = None, corners: bool = True
 ) -> tuple[Outlines, DualEdges]:
     """Return the dense outlines, in the plane of `frame`, and the dual edges their points lie on.
 
