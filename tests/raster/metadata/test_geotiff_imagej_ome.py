@@ -35,7 +35,7 @@ def test_imagej(dtype, unit, tmp_path):
     assert read(path).frame.spacing == (1, 1)
 
 
-@pytest.mark.parametrize("dtype", [np.uint8, np.int64])
+@pytest.mark.parametrize("dtype", [np.uint8, np.float64])
 @pytest.mark.parametrize(
     ("unit", "expected"), [("µm", (0.103, "um")), ("mm", (0.103, "mm")), ("nm", (0.103e-3, "um")), (None, (0.103, "um"))]
 )
