@@ -527,7 +527,7 @@ BAD_INPUT = {
     "unit": (["DISC", "--edge-length", "8mm"], "--edge-length: expected a number with a unit, like 8, '8px' or '2%', found '8mm'"),
     "spacing": (["DISC", "--spacing", "0"], "--spacing: expected a number above 0, found 0.0"),
     "no spacing in the file": (["DISC", "--spacing", "file"], "--spacing: 'file' expected a resolution"),
-    "threshold": (["DISC", "--threshold", "high"], "--threshold: expected a number or 'otsu', found 'high'"),
+    "threshold": (["DISC", "--threshold", "high"], "--threshold: expected a number, 'otsu' or 'alpha', found 'high'"),
     "labels and threshold": (["DISC", "--labels", "--threshold", "3"], "--threshold: expected to be left out"),
     "label not there": (["DISC", "--labels", "9"], "--labels: expected values of the image, found 9"),
     "label is background": (["DISC", "--labels", "0,255"], "give --background none"),
