@@ -281,7 +281,7 @@ def _wanted(z: Points, dual_edges: DualEdges, sizes: Sizes) -> Floats:
     longest = sizes.longest if sizes.boundary is None else min(sizes.longest, sizes.boundary)
     wanted = np.full(len(z), longest)
     if sizes.field is not None:
-        wanted = np.minimum(wanted, sizes.field(as_rows(z)))
+        wanted = np.minimum(wanted, sizes.field.on_outlines(as_rows(z)))
     if sizes.elements_across is not None:
         wanted = np.minimum(wanted, by_thickness(z, dual_edges, longest, sizes.elements_across))
     if sizes.segments_per_turn is not None:

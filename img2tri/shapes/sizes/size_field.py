@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -39,10 +40,13 @@ class SizeField:
         (ny, nx) float64, at the centres of cells.
     cell
         Side of a cell, in px; cell (0, 0) lies at the origin of the plane.
+    asked
+        From points (k, 2) of the plane to the lengths (k,) a function of the user gives there, in px; None where there is none.
     """
 
     grid: Floats
     cell: float
+    asked: Callable[[Floats], Floats] | None = None
 
     def __call__(self, points: Floats) -> Floats:
         """Return the lengths (k,) wanted at points (k, 2) of the plane."""
@@ -51,6 +55,11 @@ class SizeField:
         at = points.T[::-1] / self.cell - 0.5
         result: Floats = map_coordinates(self.grid, at, order=1, mode="nearest")
         return result
+
+    def on_outlines(self, points: Floats) -> Floats:
+        """Return the lengths (k,) wanted at points (k, 2) of outlines, where a function may have a valley that lies between the cells."""
+        found = self(points)
+        return found if self.asked is None else np.minimum(found, self.asked(points))
 
 
 def size_field(
@@ -80,16 +89,16 @@ def size_field(
     if not isinstance(wanted, (Mapping, np.ndarray)) and (not callable(wanted) or isinstance(wanted, type)):
         raise ParameterError(f"{name}: expected a length, lengths by label, an array or a function, found {type(wanted).__name__}")
     if callable(wanted):
-        lengths, cell = _asked(name, wanted, frame)
+        lengths, cell, asked = *_in_cells(name, wanted, frame), partial(_asked, name, wanted, frame)
     else:
         pixels = _by_label(name, wanted, frame, labels) if isinstance(wanted, Mapping) else np.asarray(wanted)
         if pixels.shape != frame.shape:
             raise ParameterError(f"{name}: expected an array of the shape of the image {frame.shape}, found {pixels.shape}")
         if pixels.dtype.kind not in "iuf":
             raise ParameterError(f"{name}: expected an array of numbers, found {pixels.dtype}")
-        lengths, cell = _shortest(_checked(name, np.asarray(pixels, np.float64)), frame)
-    grid = _limited(lengths / frame.pixel, gradation * cell)
-    return float(grid.max()), SizeField(grid, cell)
+        lengths, cell, asked = *_shortest(_checked(name, np.asarray(pixels, np.float64)) / frame.pixel, frame), None
+    grid = _limited(lengths, gradation * cell)
+    return float(grid.max()), SizeField(grid, cell, asked)
 
 
 def _cells(frame: Frame, least: float) -> tuple[int, int, float]:
@@ -99,18 +108,24 @@ def _cells(frame: Frame, least: float) -> tuple[int, int, float]:
     return max(1, round(height / cell)), max(1, round(width / cell)), cell
 
 
-def _asked(name: str, wanted: Callable[[Floats], Floats], frame: Frame) -> tuple[Floats, float]:
+def _in_cells(name: str, wanted: Callable[[Floats], Floats], frame: Frame) -> tuple[Floats, float]:
     """Ask a function for the lengths in cells, and again in smaller ones as long as these are large for its shortest length."""
     least = max(1.0, math.sqrt(math.prod(frame.shape) * math.prod(frame.spacing) / FIRST_CELLS) / frame.pixel)
     while True:
         ny, nx, cell = _cells(frame, least)
         y, x = (np.mgrid[:ny, :nx] + 0.5) * cell
-        lengths = np.asarray(wanted(frame.world(np.stack([x.ravel(), y.ravel()], axis=1))), np.float64)
-        if lengths.shape != (ny * nx,):
-            raise ParameterError(f"{name}: expected the function to return ({ny * nx},) lengths, found shape {lengths.shape}")
-        least = max(1.0, float(_checked(name, lengths).min()) / frame.pixel)
+        lengths = _asked(name, wanted, frame, np.stack([x.ravel(), y.ravel()], axis=1))
+        least = max(1.0, float(lengths.min()))
         if cell <= SMALL_ENOUGH * _cells(frame, least)[2]:
             return lengths.reshape(ny, nx), cell
+
+
+def _asked(name: str, wanted: Callable[[Floats], Floats], frame: Frame, points: Floats) -> Floats:
+    """Ask a function for the lengths (k,) in px at points (k, 2) of the plane."""
+    lengths = np.asarray(wanted(frame.world(points)), np.float64)
+    if lengths.shape != (len(points),):
+        raise ParameterError(f"{name}: expected the function to return ({len(points)},) lengths, found shape {lengths.shape}")
+    return _checked(name, lengths) / frame.pixel
 
 
 def _shortest(pixels: Floats, frame: Frame) -> tuple[Floats, float]:

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
+import oracles
 import pytest
+import specimens
 from scipy.spatial.distance import cdist
 
+from img2tri import mesh_image
 from img2tri.errors import ParameterError
 from img2tri.shapes.sizes.size_field import FIRST_CELLS, LENGTH_STEP, MOST_FIELD_CELLS, size_field
 from img2tri.types import Frame
@@ -176,3 +179,17 @@ def test_growth_is_limited_along_diagonals_too(sign):
         _, field = size_field(asked, Frame((60, 80), upward=False), asked, gradation=0.3)
         assert (field.grid == asked).all() == (slope == 0.2)
         assert (field.grid <= asked + 1e-12).all()
+
+
+@pytest.mark.parametrize("growth", [0.1, 0.3])
+@pytest.mark.parametrize("asked", [2, 4])
+def test_edges_along_an_outline_that_lengths_grow_away_from_are_as_long_as_asked(asked, growth):
+    centre, radius, n = (70.3, 69.8), 42, 140
+    disc = specimens.disc(n, radius, centre)
+
+    def lengths(places):
+        return asked + growth * abs(np.hypot(places[:, 0] - centre[1], places[:, 1] - (n - centre[0])) - radius)
+
+    mesh = mesh_image(disc, edge_length=lengths, gradation=0.3)
+    ends = mesh.vertices[oracles.boundary(mesh.triangles)]
+    assert np.hypot(*(ends[:, 0] - ends[:, 1]).T).mean() == pytest.approx(asked, rel=0.02)
