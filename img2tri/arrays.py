@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -112,10 +113,34 @@ def unique_edges(triangles: Ints) -> tuple[Ints, Ints]:
     >>> edges.tolist(), sides.tolist()
     ([[0, 1], [0, 2], [0, 3], [1, 2], [2, 3]], [[0, 3, 1], [1, 4, 2]])
     """
-    start, end = triangles, np.roll(triangles, -1, axis=1)
-    n = int(triangles.max(initial=0)) + 1
-    keys, sides = np.unique(np.minimum(start, end) * n + np.maximum(start, end), return_inverse=True)
-    return np.stack(np.divmod(keys, n), axis=1), sides.reshape(triangles.shape)
+    short = triangles.astype(np.int32) if triangles.max(initial=0) < 2**31 else triangles  # half the memory to go through
+    start, end = short.ravel(), np.roll(short, -1, axis=1).ravel()
+    lower, higher = np.minimum(start, end), np.maximum(start, end)
+    # Least significant key first, as in a radix sort: each pass keeps the order of the one before where keys are equal.
+    order = counting_sort(higher)
+    order = order[counting_sort(lower[order])]
+    lower, higher = lower[order], higher[order]
+    new = np.ones(len(order), bool)
+    new[1:] = (lower[1:] != lower[:-1]) | (higher[1:] != higher[:-1])
+    sides = np.empty(len(order), np.int64)
+    sides[order] = np.cumsum(new) - 1
+    return np.stack([lower[new], higher[new]], axis=1).astype(np.int64), sides.reshape(triangles.shape)
+
+
+def counting_sort(keys: NDArray[Any]) -> Ints:
+    """Return the order (n,) that sorts small numbers, equal ones in the order they have: in linear time, several times as fast as a sort.
+
+    Examples
+    --------
+    >>> counting_sort(np.array([2, 0, 1, 0])).tolist()
+    [1, 3, 2, 0]
+    """
+    from scipy.sparse import csr_array
+
+    n, size = len(keys), int(keys.max(initial=0)) + 1
+    # A matrix with one entry in each row; to store it by columns, SciPy counts.
+    matrix = csr_array((np.ones(n, np.int8), keys, np.arange(n + 1)), shape=(n, size))
+    return np.asarray(matrix.tocsc().indices, np.int64)
 
 
 def independent(lower: Ints, higher: Ints, n: int) -> Bools:

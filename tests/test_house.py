@@ -44,6 +44,7 @@ ORDER = [
 FOLDERS = {*ROOMS, "paper", "recipes", "certificate", "options", "app", "cli"}  # their files may import each other
 # numpy is at home everywhere.
 LIBRARIES = {
+    "arrays": {"scipy"},  # sorts by counting
     "raster": {"cv2", "PIL", "tifffile", "pydicom", "nibabel", "scipy"},  # scipy joins runs of pixels to components
     "shapes": {"shapely", "scipy", "cv2"},  # cv2 measures distances to the places where lengths are given
     "triangles": {"scipy", "igl", "pythoncdt", "shapely"},

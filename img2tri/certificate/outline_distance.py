@@ -1,59 +1,75 @@
 """How far the curves of a mesh are from the outlines of its image: two-sided Hausdorff distance, and pixels on the wrong side.
 
 In: segments, the boundary and interface edges of a mesh or the outlines of an image, in the plane of the frame, in pixels. Out: distances
-and places. Distances are measured at samples `SAMPLE_STEP` apart, to the segments themselves, found by an R-tree.
+and places. Distances are measured at samples `SAMPLE_STEP` apart, to the segments themselves.
+
+The nearest segment is found by a search tree over samples of the segments. A segment at distance d has a sample within
+sqrt(d^2 + half the step^2): if the samples found reach farther than that of the nearest segment among theirs, no other one is nearer. Where
+they do not, more are asked for.
 """
 
 from __future__ import annotations
 
-import numpy as np
+from functools import cached_property
 
-from img2tri.arrays import Bools, Floats, Ints, runs
+import numpy as np
+from scipy.spatial import cKDTree
+
+from img2tri.arrays import Floats, Ints, Points, as_complex, as_rows, cross, runs
 from img2tri.errors import MeshError
+from img2tri.shapes.simplify.clearance import to_segment
 from img2tri.types import Provenance
 
 SAMPLE_STEP = 0.5  # px between the samples that distances are measured at
+FIRST_ASKED = 3  # samples looked at around a place at first
+MOST_SQUARES = 4000  # to a side of the grid in which triangles near pixels are looked for
 
 
 class SegmentSet:
-    """A set of segments, to measure distances to."""
+    """A set of segments, to measure distances to.
+
+    Attributes
+    ----------
+    places
+        (s, 2) places on the segments, ends included, at most `SAMPLE_STEP` apart.
+    """
 
     def __init__(self, points: Floats, segments: Ints) -> None:
-        import shapely
+        self._a, self._b = as_complex(points)[segments].T
+        pieces = np.maximum(np.ceil(np.abs(self._b - self._a) / SAMPLE_STEP).astype(np.int64), 1)
+        which, place = runs(pieces + 1)
+        samples = self._a[which] + place / pieces[which] * (self._b - self._a)[which]
+        self._owner, self._samples = which, samples
+        # Ends once, and as they were given.
+        inner = (place > 0) & (place < pieces[which])
+        ends = np.zeros(len(points), bool)
+        ends[segments] = True
+        self.places = np.concatenate([as_rows(samples[inner]), points[ends]])
 
-        self.points, self.segments = points, segments
-        self.ends = points[segments]
-        self.tree = shapely.STRtree(shapely.linestrings(self.ends))
+    @cached_property
+    def _tree(self) -> cKDTree:
+        return cKDTree(as_rows(self._samples))
 
     def distance(self, places: Floats) -> Floats:
         """Distance of places (k, 2) to the nearest segment."""
-        import shapely
-
-        result: Floats = self.tree.query_nearest(shapely.points(places), return_distance=True, all_matches=False)[1]
+        z, result, open_ = as_complex(places), np.zeros(len(places)), np.arange(len(places))
+        asked = FIRST_ASKED
+        while len(open_):
+            asked = min(asked, len(self._samples))
+            reach, found = map(np.asarray, self._tree.query(places[open_], k=np.arange(1, asked + 1)))
+            owner = self._owner[found]
+            nearest = to_segment(z[open_, None], self._a[owner], self._b[owner]).min(axis=1)
+            result[open_] = nearest
+            if asked == len(self._samples):
+                break
+            open_ = open_[reach[:, -1] ** 2 < nearest**2 + (SAMPLE_STEP / 2) ** 2 + 1e-9]
+            asked *= 4
         return result
-
-    def within(self, places: Floats, distance: float) -> Bools:
-        """Tell which places (k, 2) lie within a distance of the nearest segment."""
-        import shapely
-
-        result = np.zeros(len(places), bool)
-        result[self.tree.query(shapely.points(places), predicate="dwithin", distance=distance)[0]] = True
-        return result
-
-    def samples(self) -> Floats:
-        """Places on the segments, ends included, at most `SAMPLE_STEP` apart."""
-        a, b = self.ends[:, 0], self.ends[:, 1]
-        pieces = np.maximum(np.ceil(np.hypot(*(b - a).T) / SAMPLE_STEP).astype(np.int64), 1)
-        which, place = runs(pieces - 1)
-        share = (1 + place) / pieces[which]
-        ends = np.zeros(len(self.points), bool)
-        ends[self.segments] = True
-        return np.concatenate([a[which] + share[:, None] * (b - a)[which], self.points[ends]])
 
 
 def hausdorff(one: SegmentSet, other: SegmentSet) -> tuple[float, Floats]:
     """Two-sided distance of the outlines and the curves of a mesh, and the place that is farthest."""
-    there, back = one.samples(), other.samples()
+    there, back = one.places, other.places
     if not len(back):
         raise MeshError("report: expected a mesh with a boundary, found one folded upon itself, with two triangles at every edge")
     far = other.distance(there), one.distance(back)
@@ -64,26 +80,41 @@ def hausdorff(one: SegmentSet, other: SegmentSet) -> tuple[float, Floats]:
 
 def wrong_pixels(plane: Floats, triangles: Ints, number: Ints, curves: SegmentSet, origin: Provenance) -> Floats:
     """Pixel centres in a wrong region, farther than the tolerance from the edge of the mesh."""
-    import shapely
-    from scipy.spatial import cKDTree
-
-    far = np.flatnonzero(~curves.within(origin.pixels, (origin.tolerance or 0.0) + 1e-9))
+    far = np.flatnonzero(curves.distance(origin.pixels) > (origin.tolerance or 0.0) + 1e-9)
     if not len(far):
         return np.zeros((0, 2))
     found = np.zeros(len(far), np.int64)
-    corners = plane[triangles]
-    # Few triangles hold a pixel centre beside an outline: find them by their size, by their boxes, then by their three sides.
+    z, p = as_complex(plane), as_complex(origin.pixels[far])
+    # Few triangles hold a pixel centre beside an outline: find them by their size, then by their three sides.
+    near = _near(z, triangles, p)
+    corners = z[triangles[near]]
     middle = corners.mean(axis=1)
-    reach = np.sqrt(((corners - middle[:, None]) ** 2).sum(axis=2).max(axis=1))
-    nearest = cKDTree(origin.pixels[far]).query(middle, distance_upper_bound=float(reach.max()) * (1 + 1e-9) + 1e-9)[0]
-    near = np.flatnonzero(nearest <= reach * (1 + 1e-9))
-    low, high = corners[near].min(axis=1), corners[near].max(axis=1)
-    tree = shapely.STRtree(shapely.points(origin.pixels[far]))
-    box, pixel = tree.query(shapely.box(low[:, 0], low[:, 1], high[:, 0], high[:, 1]))
-    inside, box = np.ones(len(box), bool), near[box]
-    p = origin.pixels[far[pixel]]
+    reach = np.abs(corners - middle[:, None]).max(axis=1)
+    held = cKDTree(as_rows(p)).query_ball_point(as_rows(middle), reach * (1 + 1e-9))
+    triangle = np.repeat(near, [len(some) for some in held])
+    pixel = np.concatenate([np.asarray(some, np.int64) for some in held] or [np.zeros(0, np.int64)])
+    inside = np.ones(len(pixel), bool)
     for k in range(3):
-        a, b = corners[box, k], corners[box, (k + 1) % 3]
-        inside &= (b[:, 0] - a[:, 0]) * (p[:, 1] - a[:, 1]) >= (b[:, 1] - a[:, 1]) * (p[:, 0] - a[:, 0])
-    found[pixel[inside]] = number[box[inside]]
+        a, b = z[triangles[triangle, k]], z[triangles[triangle, (k + 1) % 3]]
+        inside &= cross(b - a, p[pixel] - a) >= 0
+    found[pixel[inside]] = number[triangle[inside]]
     return np.asarray(origin.pixels[far[found != origin.pixel_regions[far]]])
+
+
+def _near(z: Points, triangles: Ints, places: Points) -> Ints:
+    """Triangles that may hold one of some places: those large or near one, by squares of a grid as wide as most triangles."""
+    a, b, c = (z[corner] for corner in triangles.T)
+    size = np.maximum(np.abs(b - a), np.abs(c - a))  # no place in the triangle is farther from its first corner
+    low = complex(min(z.real.min(), places.real.min()), min(z.imag.min(), places.imag.min()))
+    extent = max(np.ptp(z.real), np.ptp(z.imag), np.ptp(places.real), np.ptp(places.imag))
+    width = max(2 * float(size.mean()), extent / MOST_SQUARES)
+    columns = int(extent / width) + 5
+
+    def square(at: Points) -> Ints:
+        return ((at.imag - low.imag) / width + 1).astype(np.int64) * columns + ((at.real - low.real) / width + 1).astype(np.int64)
+
+    marked, hit = np.zeros(columns * columns, bool), np.unique(square(places))
+    for up in (-columns, 0, columns):
+        for right in (-1, 0, 1):
+            marked[hit + up + right] = True
+    return np.flatnonzero(marked[square(a)] | (size > width))

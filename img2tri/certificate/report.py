@@ -15,11 +15,11 @@ from typing import Any
 
 import numpy as np
 
+from img2tri.certificate.edge_sides import EdgeSides
 from img2tri.certificate.outline_distance import SegmentSet, hausdorff, wrong_pixels
 from img2tri.certificate.region_areas import AREA_TOLERANCE, displaced, region_areas, region_numbers, regions_off
+from img2tri.certificate.small_angles import small_angles
 from img2tri.certificate.topology_and_defects import DEFECTS, defects, neighbours, topology
-from img2tri.triangles.tools.quality_summary import measure
-from img2tri.triangles.tools.topology import curve_edges
 from img2tri.types import Floats, Frame, Ints, Provenance
 
 PLACES = 20  # listed at most
@@ -136,13 +136,14 @@ def certify(vertices: Floats, triangles: Ints, regions: Ints, frame: Frame, orig
     """
     plane, outlines = (vertices - frame.corner) / frame.pixel, origin.outlines
     number, unknown = region_numbers(regions, outlines.labels)
-    curves = SegmentSet(plane, curve_edges(triangles, regions))
+    sides = EdgeSides.of(triangles)
+    curves = SegmentSet(plane, sides.edges[sides.curves(regions)])
     distance, farthest = hausdorff(SegmentSet(outlines.points, outlines.segments[0]), curves)
     wrong = wrong_pixels(plane, triangles, number, curves, origin)
-    angle = measure(vertices, triangles, ["min_angle"])["min_angle"]
-    narrow = np.flatnonzero(angle < (origin.min_angle or 0.0) - 1e-9)
-    middles = vertices[triangles].mean(axis=1)
-    missing, extra = neighbours(triangles, number, outlines)
+    worst, angle = small_angles(vertices, triangles, origin.min_angle or 0.0)
+    narrow = worst[angle < (origin.min_angle or 0.0) - 1e-9]
+    places = vertices[triangles[np.append(narrow[:PLACES], worst[np.argmin(angle)])]].mean(axis=1)
+    missing, extra = neighbours(number, sides, outlines)
     off = regions_off(plane, triangles, number, curves, origin)
     facts: dict[str, Any] = {
         "removed": origin.counted.get("removed", {}),
@@ -153,18 +154,18 @@ def certify(vertices: Floats, triangles: Ints, regions: Ints, frame: Frame, orig
         "areas": region_areas(plane, triangles, number, origin, frame.pixel),
         "areas_off": {} if origin.tolerance is None else {label: _place(frame.world(at)) for label, at in off.items()},
         "displaced": displaced(plane, triangles, number, origin),
-        "topology": topology(triangles, number, outlines),
+        "topology": topology(triangles, number, sides, outlines),
         "unknown_labels": unknown,
         "neighbours_missing": missing,
         "neighbours_extra": extra,
         "wrong_pixels": len(wrong),
         "wrong_pixels_at": [_place(p) for p in frame.world(wrong[:PLACES])],
-        **defects(vertices, triangles, regions),
+        **defects(vertices, triangles, regions, sides),
         "smallest_angle": float(angle.min()),
-        "smallest_angle_at": _place(middles[np.argmin(angle)]),
+        "smallest_angle_at": _place(places[-1]),
         "min_angle": origin.min_angle,
         "narrow": len(narrow),
-        "narrow_at": [_place(p) for p in middles[narrow[:PLACES]]],
+        "narrow_at": [_place(p) for p in places[:-1]],
     }
     return Report(
         origin.recipe, origin.options, origin.settings, origin.counted, len(vertices), len(triangles), **facts, warnings=_warnings(facts)

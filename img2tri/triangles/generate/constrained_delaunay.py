@@ -18,12 +18,11 @@ from dataclasses import dataclass
 
 import numpy as np
 import pythoncdt
-from numpy.typing import ArrayLike, NDArray
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import connected_components
+from numpy.typing import ArrayLike
 
 from img2tri.arrays import Floats, Ints
 from img2tri.errors import MeshError
+from img2tri.triangles.connected_faces import connected_faces
 
 SUPER = 3  # corners of one triangle around everything, which pythoncdt puts before the vertices it was given
 
@@ -175,7 +174,10 @@ def _label(triangulation: pythoncdt.Triangulation, n: int, segments: Ints, left:
     a, b, c = triangles.T
     outer = np.flatnonzero((a < 0) | (b < 0) | (c < 0))
     edges, owners, votes = _votes(triangles, n, segments, left, right)
-    faces = _faces(neighbours, edges)
+    # Triangles joined across edges that are no segments; -1 for the rest.
+    joined = neighbours.copy()
+    joined.ravel()[edges] = -1
+    faces = connected_faces(joined)
     # Every face takes the label one of its voters names; the face around everything, 0.
     region = np.zeros(faces.max() + 1, np.int64)
     region[faces[edges // 3]] = votes
@@ -214,19 +216,6 @@ def _votes(triangles: Ints, n: int, segments: Ints, left: Ints, right: Ints) -> 
     if len(edges) != len(known):
         raise PslgError("segments: expected each once, and no point on them")
     return edges, found % len(segments), np.concatenate([left, right])[found]
-
-
-def _faces(neighbours: NDArray[np.int32], closed: Ints) -> Ints:
-    """Give each face a number: triangles joined across edges that are not closed. A neighbour of -1 is none."""
-    passable = neighbours >= 0
-    passable.ravel()[closed] = False
-    ends = np.zeros(len(neighbours) + 1, np.int32)
-    a, b, c = passable.view(np.int8).T
-    np.cumsum(a + b + c, out=ends[1:])
-    beyond = neighbours[passable]
-    graph = csr_array((np.ones(len(beyond)), beyond, ends), shape=(len(neighbours),) * 2)
-    # Its links all go both ways: strongly connected is connected, and found without a transposed copy.
-    return connected_components(graph, connection="strong")[1].astype(np.int64)
 
 
 def _pieces(triangulation: pythoncdt.Triangulation, vertices: Floats, segments: Ints) -> tuple[Ints, Ints]:

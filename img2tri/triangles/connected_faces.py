@@ -1,0 +1,40 @@
+"""Which triangles hang together: neighbours -> the number of the face each triangle belongs to."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from img2tri.arrays import Ints
+
+
+def connected_faces(neighbours: NDArray[np.int32]) -> Ints:
+    """Return the number of the face that each triangle belongs to: those joined by a chain of neighbours.
+
+    Parameters
+    ----------
+    neighbours
+        (m, 3) int32, the triangles beyond the three sides of each; negative where there is none, or none that counts. Whoever has a
+        neighbour is its neighbour too.
+
+    Returns
+    -------
+    face : (m,) int64
+        From 0 on; faces are numbered by no order that means anything.
+
+    Examples
+    --------
+    >>> connected_faces(np.array([[-1, 1, -1], [0, -1, -1], [-1, -1, -1]], np.int32)).tolist()
+    [0, 0, 1]
+    """
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import connected_components
+
+    joined = neighbours >= 0
+    ends = np.zeros(len(neighbours) + 1, np.int32)
+    a, b, c = joined.view(np.int8).T
+    np.cumsum(a + b + c, out=ends[1:])
+    beyond = neighbours[joined]
+    graph = csr_array((np.ones(len(beyond)), beyond, ends), shape=(len(neighbours),) * 2)
+    # Its links all go both ways: strongly connected is connected, and found without a transposed copy.
+    return connected_components(graph, connection="strong")[1].astype(np.int64)
