@@ -16,7 +16,7 @@ def small_angles(vertices: Floats, triangles: Ints, below: float) -> tuple[Ints,
 
     Examples
     --------
-    >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 2.0]])
+    >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 3.0]])
     >>> which, angles = small_angles(square, np.array([[0, 1, 2], [0, 2, 3]]), 30)
     >>> which.tolist(), angles.round(2).tolist()
     ([1], [26.57])
