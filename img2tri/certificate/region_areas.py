@@ -15,6 +15,9 @@ from img2tri.types import Provenance
 AREA_TOLERANCE = 0.01  # relative: what the area of a region may be off
 SMALL_AREA = 16.0  # px: the area of regions up to this size is not promised
 
+Moments = tuple[Floats, Floats, Floats]
+"""Area of each region number (r,), and the integrals of x and y over it."""
+
 
 def region_numbers(regions: Ints, labels: Ints) -> tuple[Ints, list[int]]:
     """Region number (m,) of each triangle, 0 where the image has no such label, and these labels."""
@@ -23,24 +26,32 @@ def region_numbers(regions: Ints, labels: Ints) -> tuple[Ints, list[int]]:
     return np.where(known, at, 0), np.unique(regions[~known]).tolist()
 
 
-def region_areas(plane: Floats, triangles: Ints, number: Ints, origin: Provenance, pixel: float) -> dict[int, dict[str, float]]:
+def moments(plane: Floats, triangles: Ints, number: Ints, size: int) -> Moments:
+    """Area of each region number in the mesh, and the integrals of x and y over it."""
+    a, b, c = as_complex(plane)[triangles].T
+    area, middle = ((b - a).conj() * (c - a)).imag / 2, (a + b + c) / 3
+    parts = area, area * middle.real, area * middle.imag
+    first, second, third = (np.asarray(np.bincount(number, part, size), np.float64) for part in parts)
+    return first, second, third
+
+
+def region_areas(found: Moments, origin: Provenance, pixel: float) -> dict[int, dict[str, float]]:
     """Area of each label in the mesh and in the image, in world units squared, and the relative error."""
-    found = _moments(plane, triangles, number, len(origin.areas))[0] * pixel**2
+    areas = found[0] * pixel**2
     wanted = origin.areas * pixel**2
     return {
-        label: {"mesh": float(found[i]), "image": float(wanted[i]), "error": float(found[i] / wanted[i] - 1)}
+        label: {"mesh": float(areas[i]), "image": float(wanted[i]), "error": float(areas[i] / wanted[i] - 1)}
         for i, label in enumerate(origin.outlines.labels.tolist())
         if i
     }
 
 
-def regions_off(plane: Floats, triangles: Ints, number: Ints, curves: SegmentSet, origin: Provenance) -> dict[int, Floats]:
+def regions_off(found: Moments, curves: SegmentSet, origin: Provenance) -> dict[int, Floats]:
     """Places (2,), by label, of regions of more than `SMALL_AREA` pixels whose area is off by more than `AREA_TOLERANCE`.
 
     The place is the point of the region's outline that is farthest from the curves of the mesh.
     """
-    found = _moments(plane, triangles, number, len(origin.areas))[0]
-    off = (origin.areas > SMALL_AREA) & (np.abs(found - origin.areas) > AREA_TOLERANCE * origin.areas)
+    off = (origin.areas > SMALL_AREA) & (np.abs(found[0] - origin.areas) > AREA_TOLERANCE * origin.areas)
     off[0] = False
     segments, left, right = origin.outlines.segments
     places = {}
@@ -50,7 +61,7 @@ def regions_off(plane: Floats, triangles: Ints, number: Ints, curves: SegmentSet
     return places
 
 
-def displaced(plane: Floats, triangles: Ints, number: Ints, origin: Provenance) -> list[int]:
+def displaced(found: Moments, origin: Provenance) -> list[int]:
     """Labels that lie elsewhere than in the image, by more than outlines within the tolerance of each other explain.
 
     An outline moved by t moves the first moment of its region about a point by t times the sum of length x distance, at most.
@@ -62,19 +73,10 @@ def displaced(plane: Floats, triangles: Ints, number: Ints, origin: Provenance) 
     parts = (sweep, sweep * (a + b).real / 3, sweep * (a + b).imag / 3)
     area, mx, my = (np.bincount(left, part, size) - np.bincount(right, part, size) for part in parts)
     centre = (mx + 1j * my) / np.where(area, area, 1)
-    found, fx, fy = _moments(plane, triangles, number, size)
-    off = np.abs(fx + 1j * fy - found * centre)
+    there, fx, fy = found
+    off = np.abs(fx + 1j * fy - there * centre)
     reach = np.zeros(size)
     for side in (left, right):
         reach += np.bincount(side, np.abs(b - a) * (np.abs((a + b) / 2 - centre[side]) + 1), size)
     limit = 2 * max(origin.tolerance or 0.0, 0.5) * reach
     return [int(label) for label in o.labels[1:][(off > limit)[1:]]]
-
-
-def _moments(plane: Floats, triangles: Ints, number: Ints, size: int) -> tuple[Floats, Floats, Floats]:
-    """Area of each region number in the mesh, and the integrals of x and y over it."""
-    a, b, c = as_complex(plane)[triangles].T
-    area, middle = ((b - a).conj() * (c - a)).imag / 2, (a + b + c) / 3
-    parts = area, area * middle.real, area * middle.imag
-    first, second, third = (np.asarray(np.bincount(number, part, size), np.float64) for part in parts)
-    return first, second, third

@@ -17,7 +17,7 @@ import numpy as np
 
 from img2tri.certificate.edge_sides import EdgeSides
 from img2tri.certificate.outline_distance import SegmentSet, hausdorff, wrong_pixels
-from img2tri.certificate.region_areas import AREA_TOLERANCE, displaced, region_areas, region_numbers, regions_off
+from img2tri.certificate.region_areas import AREA_TOLERANCE, displaced, moments, region_areas, region_numbers, regions_off
 from img2tri.certificate.small_angles import small_angles
 from img2tri.certificate.topology_and_defects import DEFECTS, defects, neighbours, topology
 from img2tri.types import Floats, Frame, Ints, Provenance
@@ -144,16 +144,17 @@ def certify(vertices: Floats, triangles: Ints, regions: Ints, frame: Frame, orig
     narrow = worst[angle < (origin.min_angle or 0.0) - 1e-9]
     places = vertices[triangles[np.append(narrow[:PLACES], worst[np.argmin(angle)])]].mean(axis=1)
     missing, extra = neighbours(number, sides, outlines)
-    off = regions_off(plane, triangles, number, curves, origin)
+    found = moments(plane, triangles, number, len(origin.areas))
+    off = regions_off(found, curves, origin)
     facts: dict[str, Any] = {
         "removed": origin.counted.get("removed", {}),
         "notes": origin.notes,
         "hausdorff": distance * frame.pixel,
         "hausdorff_at": _place(frame.world(farthest)),
         "tolerance": None if origin.tolerance is None else origin.tolerance * frame.pixel,
-        "areas": region_areas(plane, triangles, number, origin, frame.pixel),
+        "areas": region_areas(found, origin, frame.pixel),
         "areas_off": {} if origin.tolerance is None else {label: _place(frame.world(at)) for label, at in off.items()},
-        "displaced": displaced(plane, triangles, number, origin),
+        "displaced": displaced(found, origin),
         "topology": topology(triangles, number, sides, outlines),
         "unknown_labels": unknown,
         "neighbours_missing": missing,
