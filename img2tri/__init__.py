@@ -14,8 +14,8 @@ The house around the stages:
     recipes/      ways through the stages; only recipes hand data from one stage to the next
     paper/        the paper this library began with: every function of its listing, and its two recipes
     certificate/  `Report`: what a finished mesh keeps of what was promised, measured
-    mesh          `TriangleMesh`, the result, with methods for all that can be done with it; `mesh_pictures` shows it
-    app/          the viewer with knobs, in a browser and in notebooks
+    mesh          `TriangleMesh`, the result, with methods for all that can be done with it; `mesh_exports` hands it on, `mesh_pictures`
+    shows it app/          the viewer with knobs, in a browser and in notebooks
     types         records handed between stages; `arrays` and `errors` are what all files share
     cli/          the command line, ``img2tri``; ``python -m img2tri`` begins in `__main__`
 

@@ -35,6 +35,7 @@ ORDER = [
     {"recipes", "certificate"},
     {"options"},
     {"mesh_pictures"},
+    {"mesh_exports"},
     {"mesh"},
     {"pipeline"},
     {"app"},
@@ -52,9 +53,10 @@ LIBRARIES = {
     "paper": {"cv2", "pythoncdt", "scipy", "shapely"},  # cv2 traces its contours
     "recipes": {"scipy"},
     "certificate": {"shapely", "scipy"},
-    "mesh": {"skfem", "shapely", "trimesh", "pyvista", "matplotlib"},  # for types only
     "mesh_pictures": {"matplotlib"},
     "app": {"starlette", "uvicorn", "anywidget", "traitlets", "matplotlib"},
+    "mesh_exports": {"skfem", "shapely", "trimesh", "pyvista"},  # for types only
+    "mesh": {"matplotlib"},  # for types only
     "cli": {"rich"},
 }
 HEAVY = {"cv2", "PIL", "tifffile", "scipy", "shapely", "igl", "pythoncdt", "trimesh", "pyvista", "vtkmodules", "matplotlib", "rich"}

@@ -165,8 +165,8 @@ def _add_files(parser: ArgumentParser) -> None:
     )
     add = parser.add_argument_group("files to write", about).add_argument
     formats = (
-        "to print or look at: .stl .ply .obj .off .3mf .glb .vtp .vtu; for solvers: .msh .inp .bdf .xdmf .vtkhdf; outlines: .svg .dxf "
-        ".geojson; - for stdout, with --format; may be given several times"
+        "to print or look at: .stl .ply .obj .off .3mf .glb .vtp .vtu; for solvers: .msh .inp .bdf .xdmf .mesh .vtkhdf; outlines: .svg "
+        ".dxf .geojson; - for stdout, with --format; may be given several times"
     )
     add("-o", "--output", dest="outputs", action="append", default=[], metavar="MESH", help=formats)
     add("--out-dir", metavar="FOLDER", help="write {stem} with the suffix of each --format to this folder, made if its parent is there")

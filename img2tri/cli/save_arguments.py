@@ -11,7 +11,7 @@ from img2tri.errors import ParameterError, finite, integer
 from img2tri.options.option import every
 from img2tri.options.typed import number, whole_number
 
-SOLVERS = (".msh", ".inp", ".bdf", ".xdmf", ".vtu", ".vtkhdf")
+SOLVERS = (".msh", ".inp", ".bdf", ".xdmf", ".mesh", ".vtu", ".vtkhdf")
 
 
 @dataclass(frozen=True)

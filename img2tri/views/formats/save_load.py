@@ -26,13 +26,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from img2tri.arrays import Floats, Ints
-from img2tri.errors import FileError, MeshError
+from img2tri.errors import FileError, MeshError, ParameterError
 from img2tri.views.formats import threemf
 from img2tri.views.formats.atomic_write import known_suffix, store, writable
 from img2tri.views.formats.glb import glb
-from img2tri.views.formats.read_stl_ply_obj_off_glb import by_trimesh
-from img2tri.views.formats.read_vtp_vtu import by_xml
-from img2tri.views.formats.solvers.read_msh_bdf import READERS, by_text
+from img2tri.views.formats.readers.read_msh_bdf import READERS, by_text
+from img2tri.views.formats.readers.read_stl_ply_obj_off_glb import by_trimesh
+from img2tri.views.formats.readers.read_vtp_vtu import by_xml
 from img2tri.views.formats.stl_ply_obj_off import obj, off, ply, stl
 from img2tri.views.formats.vtp_vtu import vtp, vtu_of_surface
 from img2tri.views.objects.body_per_region import Body, bodies
@@ -50,6 +50,8 @@ class Format(NamedTuple):
         The other way round; None where no plane mesh is to be expected.
     single
         Whether its coordinates are float32.
+    arrays
+        Whether it holds other values of faces and points.
     bodies
         Who writes solids instead, where each region is to be closed by itself.
     """
@@ -57,18 +59,19 @@ class Format(NamedTuple):
     write: Callable[[Surface], bytes]
     read: Callable[[bytes, str], tuple[NDArray[Any], NDArray[Any], NDArray[Any] | None]] | None
     single: bool = False
+    arrays: bool = False
     bodies: Callable[[Sequence[Body]], bytes] | None = None
 
 
 SURFACE_FORMATS = {
     ".stl": Format(stl, by_trimesh, single=True),
-    ".ply": Format(ply, by_trimesh),
+    ".ply": Format(ply, by_trimesh, arrays=True),
     ".obj": Format(obj, by_trimesh),
     ".off": Format(off, by_trimesh),
     ".3mf": Format(threemf.flat_3mf, None, bodies=threemf.bodies_3mf),
     ".glb": Format(glb, by_trimesh, single=True),
-    ".vtp": Format(vtp, by_xml),
-    ".vtu": Format(vtu_of_surface, by_xml),
+    ".vtp": Format(vtp, by_xml, arrays=True),
+    ".vtu": Format(vtu_of_surface, by_xml, arrays=True),
 }
 
 
@@ -79,9 +82,10 @@ def save(
     regions: ArrayLike | None = None,
     *,
     z: float = 0.0,
-    height: float | None = None,
+    height: float | Mapping[int, float] | None = None,
     names: Mapping[int, str] | None = None,
     cell_data: Mapping[str, ArrayLike] | None = None,
+    point_data: Mapping[str, ArrayLike] | None = None,
     field_data: Mapping[str, str] | None = None,
 ) -> None:
     """Write a plane mesh, or with `height` the closed surface of the solid, in the format the suffix of `path` names.
@@ -94,7 +98,7 @@ def save(
         Where to write: .stl, .ply, .obj, .off, .3mf, .glb, .vtp or .vtu. See the table above for what each can hold.
     names
         Label -> name of the region, for formats that hold names.
-    vertices, triangles, regions, z, height, cell_data, field_data
+    vertices, triangles, regions, z, height, cell_data, point_data, field_data
         As in `img2tri.views.objects.flat_or_extruded.surface`.
 
     Raises
@@ -114,11 +118,17 @@ def save(
     """
     target = writable(path, SURFACE_FORMATS)
     form = SURFACE_FORMATS[known_suffix(path, SURFACE_FORMATS)]
+    others = [*(name for name in cell_data or {} if name != "q"), *(point_data or {})]
+    if others and not form.arrays:
+        homes = ", ".join(suffix for suffix, form in SURFACE_FORMATS.items() if form.arrays)
+        raise ParameterError(
+            f"data: expected no arrays for {target.suffix}, which has no place for them, found {', '.join(others)}; use {homes}"
+        )
     if form.bodies and height is not None:
         parts = bodies(vertices, triangles, regions, height=height, z=z, names=names, cell_data=cell_data, field_data=field_data)
         store(target, form.bodies(parts))
         return
-    made = surface(vertices, triangles, regions, z=z, height=height, cell_data=cell_data, field_data=field_data)
+    made = surface(vertices, triangles, regions, z=z, height=height, cell_data=cell_data, point_data=point_data, field_data=field_data)
     if form.single:
         _check_rounding(path, made)
     store(target, form.write(made))

@@ -6,11 +6,13 @@ import; and rather than by VTK, which drops the cell data. The bytes depend on t
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from img2tri.views.formats.number_rows import real_rows, whole_rows
 from img2tri.views.objects.flat_or_extruded import Surface
 
 _STL_FACE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -29,54 +31,63 @@ def stl(made: Surface) -> bytes:
 
 
 def ply(made: Surface) -> bytes:
-    """Binary PLY: float64 coordinates; for each face an int `region` and all cell data, whole numbers as int; texts as comments."""
-    cells = {"region": made.regions, **{"_".join(name.split()): values for name, values in made.cell_data.items()}}
-    kinds = {name: "i4" if _fits_int32(values) else "f8" for name, values in cells.items()}
-    # A row per face: 3, its corners, its values, without gaps.
-    fields = [("count", "u1"), ("corners", "<i4", 3), *((f"of {name}", "<" + kind) for name, kind in kinds.items())]
-    faces = np.zeros(len(made.faces), np.dtype(fields))
-    faces["count"], faces["corners"] = 3, made.faces
-    for name, values in cells.items():
-        faces[f"of {name}"] = values
+    """Binary PLY: float64 coordinates; for each face an int `region` and all cell data, whole numbers as int; texts as comments.
+
+    Values of points are properties of theirs; arrays of several columns become a property each, such as ``flow_1``.
+    """
+    faces, points = _columns({"region": made.regions, **made.cell_data}), _columns(made.point_data)
+    # A row per face: 3, its corners, its values, without gaps; and per point its coordinates and values.
+    face_rows = _table({"count": np.full(len(made.faces), 3, "u1"), "corners": made.faces.astype("<i4")}, faces)
+    point_rows = _table({"place": made.points.astype("<f8")}, points)
     header = [
         "ply",
         "format binary_little_endian 1.0",
         *(f"comment {note}" for note in _one_line_notes(made)),
         f"element vertex {len(made.points)}",
         *(f"property double {axis}" for axis in "xyz"),
-        f"element face {len(faces)}",
+        *_properties(points),
+        f"element face {len(faces['region'])}",
         "property list uchar int vertex_indices",
-        *(f"property {'int' if kind == 'i4' else 'double'} {name}" for name, kind in kinds.items()),
+        *_properties(faces),
         "end_header\n",
     ]
-    return "\n".join(header).encode() + made.points.astype("<f8").tobytes() + faces.tobytes()
+    return "\n".join(header).encode() + point_rows.tobytes() + face_rows.tobytes()
+
+
+def _columns(arrays: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
+    """Return the properties of arrays: as int where that holds all values, else as double."""
+    found: dict[str, NDArray[Any]] = {}
+    for name, values in arrays.items():
+        plain = "_".join(name.split())
+        parts = {plain: values} if values.ndim == 1 else {f"{plain}_{i}": column for i, column in enumerate(values.T, 1)}
+        found |= {each: column.astype("<i4" if _fits_int32(column) else "<f8") for each, column in parts.items()}
+    return found
+
+
+def _properties(columns: Mapping[str, NDArray[Any]]) -> list[str]:
+    return [f"property {'int' if values.dtype.kind == 'i' else 'double'} {name}" for name, values in columns.items()]
+
+
+def _table(first: Mapping[str, NDArray[Any]], others: Mapping[str, NDArray[Any]]) -> NDArray[Any]:
+    columns = {**first, **{f"of {name}": values for name, values in others.items()}}
+    table = np.zeros(len(next(iter(columns.values()))), np.dtype([(name, a.dtype, a.shape[1:]) for name, a in columns.items()]))
+    for name, values in columns.items():
+        table[name] = values
+    return table
 
 
 def obj(made: Surface) -> bytes:
     """Wavefront OBJ: all digits of the coordinates; the faces of each region in a group such as `region_3`; texts as comments."""
-    lines: list[str] = [f"# {note}" for note in _one_line_notes(made)]
-    lines += rows("v {!r} {!r} {!r}", made.points)
+    parts = [*(f"# {note}\n" for note in _one_line_notes(made)), real_rows(made.points, before="v ")]
     for region in np.unique(made.regions):
-        lines.append(f"g region_{region}")
-        lines += rows("f {} {} {}", made.faces[made.regions == region] + 1)
-    return ("\n".join(lines) + "\n").encode()
+        parts += [f"g region_{region}\n", whole_rows(made.faces[made.regions == region] + 1, before="f ")]
+    return "".join(parts).encode()
 
 
 def off(made: Surface) -> bytes:
     """OFF: all digits of the coordinates; no regions."""
-    lines = ["OFF", f"{len(made.points)} {len(made.faces)} 0", *rows("{!r} {!r} {!r}", made.points), *rows("3 {} {} {}", made.faces)]
-    return ("\n".join(lines) + "\n").encode()
-
-
-def rows(template: str, array: NDArray[Any]) -> list[str]:
-    """Fill `template` with each row of `array`; ``{!r}`` writes the fewest digits that give the same float64 again.
-
-    Examples
-    --------
-    >>> rows("v {!r} {!r}", np.array([[0.1, 1 / 3]]))
-    ['v 0.1 0.3333333333333333']
-    """
-    return list(map(template.format, *array.T.tolist()))
+    head = f"OFF\n{len(made.points)} {len(made.faces)} 0\n"
+    return (head + real_rows(made.points) + whole_rows(made.faces, before="3 ")).encode()
 
 
 def _one_line_notes(made: Surface) -> list[str]:

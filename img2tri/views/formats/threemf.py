@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from img2tri.arrays import Floats
 from img2tri.views.figures.colours import palette
-from img2tri.views.formats.stl_ply_obj_off import rows
+from img2tri.views.formats.number_rows import rows
 from img2tri.views.objects.body_per_region import Body
 from img2tri.views.objects.flat_or_extruded import Surface
 

@@ -7,8 +7,10 @@ What all views start from:
     extrusion         triangles and a height -> the closed surface: bottom, top and walls
     body_per_region   one closed body for each region, for printing in several materials; a trimesh.Scene of them
     wedges            triangles and a height -> wedges in layers; quadratic elements: nodes in the middle of edges
-    named_sets        names of regions, and of edges: left, outer, hole_1, bone__cartilage
+    sets/             the named parts: left, outer_1, hole_1, bone__cartilage, and their numbers
     solver_cells      cells of one kind with all their named parts: what every format for solvers starts from
+    tetrahedra        wedges cut into tetrahedra
+    periodic_nodes    the nodes of periodic cells that are the same place
     region_borders    which edges bound the mesh or part two regions
 
 Objects of libraries:

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from img2tri.arrays import Floats, Ints
+from img2tri.errors import ParameterError, finite
 from img2tri.views.figures.colours import palette
 from img2tri.views.objects.extrusion import extrude
 from img2tri.views.objects.flat_or_extruded import Surface, surface
@@ -56,7 +57,7 @@ def bodies(
     triangles: ArrayLike,
     regions: ArrayLike | None = None,
     *,
-    height: float | None,
+    height: float | Mapping[int, float] | None,
     z: float = 0.0,
     names: Mapping[int, str] | None = None,
     cell_data: Mapping[str, ArrayLike] | None = None,
@@ -70,7 +71,8 @@ def bodies(
     Parameters
     ----------
     height
-        Thickness in world units, above 0; None makes flat parts, open, that share the vertices between them.
+        Thickness in world units, above 0, or label -> that of the region; None makes flat parts, open, that share the vertices between
+        them.
     names
         Label -> name. Regions without one are called "region_3" and so on; a name given twice gets the label behind it.
     vertices, triangles, regions, z, cell_data, field_data
@@ -97,7 +99,7 @@ def bodies(
     labels, starts = np.unique(flat.regions[order], return_index=True)
     named = unique_names(labels.tolist(), names or {})
     return [
-        Body(label, named[label], (red, green, blue), _body_surface(flat, mine, height))
+        Body(label, named[label], (red, green, blue), _body_surface(flat, mine, _own(height, label)))
         for label, (red, green, blue), mine in zip(labels.tolist(), palette(len(labels)).tolist(), np.split(order, starts[1:]), strict=True)
     ]
 
@@ -107,7 +109,7 @@ def to_scene(
     triangles: ArrayLike,
     regions: ArrayLike | None = None,
     *,
-    height: float | None,
+    height: float | Mapping[int, float] | None,
     z: float = 0.0,
     names: Mapping[int, str] | None = None,
     cell_data: Mapping[str, ArrayLike] | None = None,
@@ -175,11 +177,20 @@ def _body_surface(flat: Surface, mine: Ints, height: float | None) -> Surface:
     if height is None:
         points, faces, sources = flat.points[used], corners, np.arange(len(mine))
     else:
-        points, faces, sources = extrude(flat.points[used, :2], corners, height, z=float(flat.points[0, 2]))
-        faces = _alike(points, faces, len(mine))
+        solid = extrude(flat.points[used, :2], corners, height, z=float(flat.points[0, 2]))
+        points, faces, sources = solid.points, _alike(solid.points, solid.faces, len(mine)), solid.sources
     from_triangle = mine[sources]
     cells = {name: values[from_triangle] for name, values in flat.cell_data.items()}
     return Surface(points, faces, flat.regions[from_triangle], cells, flat.field_data, closed=height is not None)
+
+
+def _own(height: float | Mapping[int, float] | None, label: int) -> float | None:
+    """Return the height of a region."""
+    if not isinstance(height, Mapping):
+        return height
+    if label not in height:
+        raise ParameterError(f"height: expected one for each region, found none for {label}")
+    return finite(f"height of {label}", height[label], above=0)
 
 
 def _alike(points: Floats, faces: Ints, triangles: int) -> Ints:

@@ -1,20 +1,50 @@
-"""A plane mesh with a thickness: triangles -> the closed surface of the solid between two heights.
+"""A plane mesh with a thickness: triangles -> the closed surface of the solid between two heights, or of one with a height of each region.
 
 The bottom is the mesh turned over, the top is the mesh, and every side of a triangle that has no neighbour becomes a wall of two
 triangles. This needs no outline: holes come out as through-holes because their sides have no neighbour either, and interfaces between
-regions make no wall. The cost is that of sorting the sides.
+regions of one height make no wall. The cost is that of sorting the sides.
+
+Where triangles have different heights, the solid is built in storeys: between two heights that follow each other stand the triangles that
+are at least as high, and the walls of a storey are those of their mesh. So a wall has a vertex wherever another one, or a roof, ends on its
+upright edges, and the surface is closed.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
+from numpy.typing import ArrayLike
 
 from img2tri.arrays import Floats, Ints
-from img2tri.errors import finite
+from img2tri.errors import ParameterError, finite
 from img2tri.views.objects.side_twins import previous_side, side_twins
 
 
-def extrude(vertices: Floats, triangles: Ints, height: float, *, z: float = 0.0) -> tuple[Floats, Ints, Ints]:
+@dataclass(frozen=True, eq=False)
+class Extrusion:
+    """The closed surface of a solid on a plane mesh.
+
+    Attributes
+    ----------
+    points
+        (p, 3) float64, level by level from the bottom: all vertices at the bottom, then those of the first roof, and so on. A vertex in
+        which parts of the mesh touch without sharing a side is there once for each part, so that the solid stays closed there.
+    faces
+        (k, 3) int64: bottom, top, then two for each wall, storey by storey; wound outwards.
+    sources
+        (k,) int64, the triangle each face comes from.
+    origins
+        (p,) int64, the vertex each point lies above.
+    """
+
+    points: Floats
+    faces: Ints
+    sources: Ints
+    origins: Ints
+
+
+def extrude(vertices: Floats, triangles: Ints, height: ArrayLike, *, z: float = 0.0) -> Extrusion:
     """Give a plane mesh a thickness: the surface of the solid from `z` to ``z + height``.
 
     The surface is closed and wound outwards wherever the mesh is wound counter-clockwise: each of its sides belongs to two triangles,
@@ -27,54 +57,81 @@ def extrude(vertices: Floats, triangles: Ints, height: float, *, z: float = 0.0)
     triangles
         (m, 3) int64, counter-clockwise.
     height
-        Thickness in world units, above 0.
+        Thickness in world units, above 0; or that of each triangle, (m,).
     z
         Height of the bottom, in world units.
-
-    Returns
-    -------
-    points
-        (2 n, 3) float64: all vertices at the bottom, then all at the top. A vertex in which parts of the mesh touch without sharing a
-        side is given once for each part, so that the solid stays closed there; n is then larger by these.
-    faces
-        (2 m + 2 b, 3) int64: bottom, top, then two for each of the b sides without a neighbour.
-    sources
-        (2 m + 2 b,) int64, the triangle each face comes from.
 
     Raises
     ------
     ParameterError
-        If `height` is not above 0, or `z` not finite.
+        If a height is not above 0, or `z` not finite.
     MeshError
         If two triangles run along a side in the same direction, so that no inside can be told from an outside.
 
     Examples
     --------
     >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
-    >>> points, faces, sources = extrude(square, np.array([[0, 1, 2], [0, 2, 3]]), 5)
-    >>> points.shape, faces.shape, sources.tolist()
+    >>> solid = extrude(square, np.array([[0, 1, 2], [0, 2, 3]]), 5)
+    >>> solid.points.shape, solid.faces.shape, solid.sources.tolist()
     ((8, 3), (12, 3), [0, 1, 0, 1, 0, 0, 0, 0, 1, 1, 1, 1])
+    >>> steps = extrude(square, np.array([[0, 1, 2], [0, 2, 3]]), [5, 2])
+    >>> steps.points.shape, steps.faces.shape
+    ((11, 3), (18, 3))
     """
-    height, z = finite("height", height, above=0), finite("z", z)
-    twins = side_twins(triangles, len(vertices))
-    free = np.flatnonzero(twins < 0)
-    corners, origin = _unpinched(triangles, len(vertices), twins)
-    n = len(origin)
+    z = finite("z", z)
+    heights = (
+        np.broadcast_to(np.asarray(height, np.float64), len(triangles))
+        if np.ndim(height)
+        else np.full(1, finite("height", height, above=0))
+    )
+    if not (np.isfinite(heights).all() and (heights > 0).all()):
+        raise ParameterError("height: expected numbers above 0, found others")
+    levels, roof = np.unique(heights, return_inverse=True)
+    roof = np.broadcast_to(roof, len(triangles))
+    n = len(vertices)
 
-    # Each side that has no neighbour becomes a wall, seen here from outside, where a -> b has the mesh behind it:
-    #
-    #     a + n ---- b + n
-    #       |      /   |
-    #       |   /      |
-    #       a -------- b
-    #
-    a, b = corners.ravel()[free], np.roll(corners, -1, axis=1).ravel()[free]
-    walls = np.stack([a, b, b + n, a, b + n, a + n], axis=1).reshape(-1, 3)
+    below, origin = np.zeros((0, 3), np.int64), np.zeros(0, np.int64)
+    points, origins, walls, sources, count = [], [], [], [], 0
+    top = np.empty_like(triangles)
+    for storey, level in enumerate(levels.tolist()):
+        mine = np.flatnonzero(roof >= storey)
+        standing = triangles[mine]
+        twins = side_twins(standing, n)
+        corners, origin = _unpinched(standing, n, twins)
+        if len(levels) > 1:
+            used, inverse = np.unique(corners, return_inverse=True)
+            corners, origin = inverse.reshape(-1, 3), origin[used]
+        if storey == 0:
+            points.append(np.column_stack([vertices[origin], np.full(len(origin), z)]))
+            origins.append(origin)
+            bottom, floor, count = corners, corners, len(origin)
+        else:
+            floor = below[mine]
+        above = corners + count
+        points.append(np.column_stack([vertices[origin], np.full(len(origin), z + level)]))
+        origins.append(origin)
+        count += len(origin)
+        top[mine] = above
+        # Each side that has no neighbour in this storey becomes a wall, seen here from outside, where a -> b has the mesh behind it:
+        #
+        #     A ---- B
+        #     |    / |
+        #     |  /   |
+        #     a ---- b
+        #
+        free = np.flatnonzero(twins < 0)
+        a, b = floor.ravel()[free], floor[:, [1, 2, 0]].ravel()[free]
+        upper_a, upper_b = above.ravel()[free], above[:, [1, 2, 0]].ravel()[free]
+        walls.append(np.stack([a, b, upper_b, a, upper_b, upper_a], axis=1).reshape(-1, 3))
+        sources.append(np.repeat(mine[free // 3], 2))
+        below = np.zeros_like(triangles)
+        below[mine] = above
 
-    points = np.concatenate([np.column_stack([vertices[origin], np.full(n, level)]) for level in (z, z + height)])
-    faces = np.concatenate([corners[:, ::-1], corners + n, walls])
     every = np.arange(len(triangles))
-    return points, faces, np.concatenate([every, every, np.repeat(free // 3, 2)])
+    return Extrusion(
+        np.concatenate(points), np.concatenate([bottom[:, ::-1], top, *walls]), np.concatenate([every, every, *sources]),
+        np.concatenate(origins)
+    )  # fmt: skip
 
 
 def _unpinched(triangles: Ints, n: int, twins: Ints) -> tuple[Ints, Ints]:

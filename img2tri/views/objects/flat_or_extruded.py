@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from img2tri.arrays import Floats, Ints
 from img2tri.errors import MeshError, ParameterError, finite
-from img2tri.views.objects.extrusion import extrude
+from img2tri.views.objects.extrusion import Extrusion, extrude
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,21 +30,24 @@ class Surface:
     faces
         (k, 3) int64.
     regions
-        (k,) int32, the width every format can hold.
+        (k,) int32, the width every format can hold; int64 where a label needs it.
     cell_data
-        Name -> (k,) array, other values of each face.
+        Name -> (k,) or (k, c) array, other values of each face.
     field_data
         Name -> text: "units" and whatever else is known about the whole. ASCII.
     closed
         True for the surface of a solid, False for a plane mesh.
+    point_data
+        Name -> (p,) or (p, c) array, values of each point.
     """
 
     points: Floats
     faces: Ints
-    regions: NDArray[np.int32]
+    regions: NDArray[np.signedinteger[Any]]
     cell_data: dict[str, NDArray[Any]]
     field_data: dict[str, str]
     closed: bool
+    point_data: dict[str, NDArray[Any]] = field(default_factory=dict)
 
 
 def surface(
@@ -53,8 +56,9 @@ def surface(
     regions: ArrayLike | None = None,
     *,
     z: float = 0.0,
-    height: float | None = None,
+    height: float | Mapping[int, float] | None = None,
     cell_data: Mapping[str, ArrayLike] | None = None,
+    point_data: Mapping[str, ArrayLike] | None = None,
     field_data: Mapping[str, str] | None = None,
 ) -> Surface:
     """Check the arrays of a plane mesh and lay it at height `z`, or make the closed solid from `z` to ``z + height`` of it.
@@ -64,14 +68,16 @@ def surface(
     vertices, triangles
         (n, 2) float64 in world units, and (m, 3) int64, counter-clockwise.
     regions
-        (m,) int64, within 32 bits. None is region 1 everywhere.
+        (m,) int64. None is region 1 everywhere.
     z
         Height of the plane, or of the bottom of the solid.
     height
-        Thickness in world units, above 0. None leaves the mesh flat.
+        Thickness in world units, above 0; or label -> that of the region, which makes one closed surface too. None leaves the mesh flat.
     cell_data
-        Name -> (m,) numbers, such as the quality of each triangle. The faces of a solid take the region and values of the triangle they
-        come from; walls, that of the triangle beside them.
+        Name -> (m,) or (m, c) numbers, such as the quality of each triangle. The faces of a solid take the region and values of the
+        triangle they come from; walls, that of the triangle beside them.
+    point_data
+        Name -> (n,) or (n, c) numbers of each vertex.
     field_data
         Name -> text. What ASCII cannot hold is escaped, as VTK reads nothing else.
 
@@ -91,18 +97,40 @@ def surface(
     v, t = plane_mesh(vertices, triangles)
     z = finite("z", z)
     labels = np.ones(len(t), np.int64) if regions is None else per_triangle("regions", regions, len(t))
-    if labels.dtype.kind not in "iu" or labels.min() < -(2**31) or labels.max() >= 2**31:
-        raise MeshError(f"regions: expected whole numbers within 32 bits, found {labels.dtype} from {labels.min()} to {labels.max()}")
-    values = {name: per_triangle(name, value, len(t)) for name, value in (cell_data or {}).items()}
+    if labels.dtype.kind not in "iu" or labels.max() >= 2**63:
+        raise MeshError(f"regions: expected whole numbers within 64 bits, found {labels.dtype} from {labels.min()} to {labels.max()}")
+    narrow = labels.min() >= -(2**31) and labels.max() < 2**31
+    values = {name: per_triangle(name, value, len(t), columns=True) for name, value in (cell_data or {}).items()}
     if "region" in values:
         raise ParameterError("cell_data: expected names other than 'region', which is the name of the regions, found 'region'")
     texts = {_ascii(name): _ascii(text) for name, text in (field_data or {}).items()}
+    nodes = {name: _per_vertex(name, value, len(v)) for name, value in (point_data or {}).items()}
     if height is None:
-        points, faces, sources = np.column_stack([v, np.full(len(v), z)]), t, np.arange(len(t))
+        solid = Extrusion(np.column_stack([v, np.full(len(v), z)]), t, np.arange(len(t)), np.arange(len(v)))
     else:
-        points, faces, sources = extrude(v, t, height, z=z)
-    cells = {name: value[sources] for name, value in values.items()}
-    return Surface(points, faces, labels[sources].astype(np.int32), cells, texts, closed=height is not None)
+        solid = extrude(v, t, heights(height, labels), z=z)
+    cells = {name: value[solid.sources] for name, value in values.items()}
+    return Surface(
+        solid.points, solid.faces, labels[solid.sources].astype(np.int32 if narrow else np.int64), cells, texts, closed=height is not None,
+        point_data={name: value[solid.origins] for name, value in nodes.items()},
+    )  # fmt: skip
+
+
+def heights(height: float | Mapping[int, float], labels: NDArray[Any]) -> ArrayLike:
+    """Return the height of all triangles, or with one for each label that of each, or say which is missing or wrong.
+
+    Examples
+    --------
+    >>> heights({1: 2.0, 7: 3}, np.array([7, 1, 1])).tolist()
+    [3.0, 2.0, 2.0]
+    """
+    if not isinstance(height, Mapping):
+        return finite("height", height, above=0)
+    each, which = np.unique(labels, return_inverse=True)
+    missing = [label for label in each.tolist() if label not in height]
+    if missing:
+        raise ParameterError(f"height: expected one for each region, found none for {', '.join(map(str, missing))}")
+    return np.array([finite(f"height of {label}", height[label], above=0) for label in each.tolist()])[which]
 
 
 def plane_mesh(vertices: ArrayLike, triangles: ArrayLike) -> tuple[Floats, Ints]:
@@ -142,11 +170,18 @@ def coincident_points(points: NDArray[Any]) -> Ints:
     return number
 
 
-def per_triangle(name: str, values: ArrayLike, m: int) -> NDArray[Any]:
-    """Return `values` as an array of one number per triangle, or say what it is instead."""
+def per_triangle(name: str, values: ArrayLike, m: int, *, columns: bool = False) -> NDArray[Any]:
+    """Return `values` as an array of one number per triangle, or with `columns` of several, or say what it is instead."""
     array = np.asarray(values)
-    if array.shape != (m,) or array.dtype.kind not in "biuf":
+    if array.shape[:1] != (m,) or array.ndim > 1 + columns or array.dtype.kind not in "biuf":
         raise MeshError(f"{name}: expected one number for each of {m} triangles, found shape {array.shape} of {array.dtype}")
+    return array
+
+
+def _per_vertex(name: str, values: ArrayLike, n: int) -> NDArray[Any]:
+    array = np.asarray(values)
+    if array.shape[:1] != (n,) or array.ndim > 2 or array.dtype.kind not in "biuf":
+        raise MeshError(f"{name}: expected numbers for each of {n} vertices, found shape {array.shape} of {array.dtype}")
     return array
 
 

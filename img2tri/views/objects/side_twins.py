@@ -43,18 +43,21 @@ def side_twins(triangles: Ints, n: int) -> Ints:
     [-1, -1, 3, 2, -1, -1]
     """
     start, end = triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
-    key = start * n + end
-    order = np.argsort(key, kind="stable")
+    # Both sides of an edge have the same key, so they follow each other.
+    key = np.minimum(start, end) * n + np.maximum(start, end)
+    order = np.argsort(key)
     ordered = key[order]
-    twice = np.count_nonzero(ordered[1:] == ordered[:-1])
-    if twice:
+    alike = ordered[1:] == ordered[:-1]
+    one, other = order[:-1][alike], order[1:][alike]
+    twice = int(np.count_nonzero(start[one] == start[other]))
+    if twice or np.any(alike[1:] & alike[:-1]):
         raise MeshError(
             "triangles: expected each side in at most two triangles, wound alike; "
-            f"found {twice} that run along a side in the same direction as another"
+            f"found {max(twice, 1)} that run along a side in the same direction as another"
         )
-    opposite = end * n + start
-    place = np.searchsorted(ordered, opposite).clip(max=len(key) - 1)
-    return np.where(ordered[place] == opposite, order[place], -1)
+    twins = np.full(len(key), -1)
+    twins[one], twins[other] = other, one
+    return twins
 
 
 def next_side(sides: Ints) -> Ints:

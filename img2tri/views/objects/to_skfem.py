@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from img2tri.arrays import Floats, Ints
+from img2tri.arrays import Floats, Ints, unique_edges
 from img2tri.errors import FileError
-from img2tri.views.objects.named_sets import Sets
+from img2tri.views.objects.sets.named_sets import Sets
 
 if TYPE_CHECKING:
     from skfem import MeshTri
 
 
-def to_skfem(vertices: Floats, triangles: Ints, sets: Sets) -> MeshTri:
+def to_skfem(vertices: Floats, triangles: Ints, sets: Sets, *, middles: Floats | None = None) -> MeshTri:
     """Make a `skfem.MeshTri` of a plane mesh.
 
     Parameters
@@ -26,11 +26,14 @@ def to_skfem(vertices: Floats, triangles: Ints, sets: Sets) -> MeshTri:
         (n, 2) float64 and (m, 3) int64.
     sets
         The named parts of the mesh.
+    middles
+        (e, 2) float64, where the node in the middle of each edge lies, edges as in `img2tri.arrays.unique_edges`; None for straight sides.
 
     Returns
     -------
     skfem.MeshTri
-        Subdomains are the regions, boundaries the named sets of edges: ``left``, ``outer``, ``hole_1``, ``bone__cartilage``.
+        Or, with `middles`, a `skfem.MeshTri2`. Subdomains are the regions, boundaries the named sets of edges: ``left``, ``outer``,
+        ``hole_1``, ``bone__cartilage``.
 
     Raises
     ------
@@ -38,7 +41,7 @@ def to_skfem(vertices: Floats, triangles: Ints, sets: Sets) -> MeshTri:
         If scikit-fem is not installed.
     """
     try:
-        from skfem import MeshTri
+        from skfem import MeshTri, MeshTri2
     except ImportError as error:
         raise FileError("to_skfem: expected scikit-fem to be installed, found it is not; pip install 'img2tri[fem]'") from error
     mesh = MeshTri(np.ascontiguousarray(vertices.T), np.ascontiguousarray(triangles.T))
@@ -49,4 +52,11 @@ def to_skfem(vertices: Floats, triangles: Ints, sets: Sets) -> MeshTri:
     for name, edges in sets.edges.items():
         wanted = edges.min(axis=1) * len(vertices) + edges.max(axis=1)
         boundaries[name] = order[np.searchsorted(key, wanted, sorter=order)]
+    if middles is not None:
+        mesh = MeshTri2.from_mesh(mesh)
+        edges = unique_edges(triangles)[0]
+        facets = order[np.searchsorted(key, edges[:, 0] * len(vertices) + edges[:, 1], sorter=order)]
+        places = mesh.doflocs.copy()
+        places[:, mesh.dofs.facet_dofs[0, facets]] = middles.T
+        mesh = MeshTri2(places, mesh.t)
     return mesh.with_subdomains(dict(sets.regions)).with_boundaries(boundaries)

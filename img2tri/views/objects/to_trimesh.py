@@ -23,8 +23,9 @@ def to_trimesh(
     regions: ArrayLike | None = None,
     *,
     z: float = 0.0,
-    height: float | None = None,
+    height: float | Mapping[int, float] | None = None,
     cell_data: Mapping[str, ArrayLike] | None = None,
+    point_data: Mapping[str, ArrayLike] | None = None,
     field_data: Mapping[str, str] | None = None,
 ) -> trimesh.Trimesh:
     """Make a `trimesh.Trimesh` of a plane mesh; nothing is merged, dropped or reordered.
@@ -46,11 +47,12 @@ def to_trimesh(
     """
     import trimesh
 
-    made = surface(vertices, triangles, regions, z=z, height=height, cell_data=cell_data, field_data=field_data)
+    made = surface(vertices, triangles, regions, z=z, height=height, cell_data=cell_data, point_data=point_data, field_data=field_data)
     return trimesh.Trimesh(
         made.points,
         made.faces,
         face_attributes={"region": made.regions, **made.cell_data},
+        vertex_attributes=dict(made.point_data),
         metadata={**made.field_data, "regions": np.unique(made.regions).tolist()},
         process=False,
     )

@@ -86,15 +86,15 @@ def wedges(
     v, t = plane_mesh(vertices, triangles)
     labels = np.ones(len(t), np.int64) if regions is None else per_triangle("regions", regions, len(t))
     height, z, layers = finite("height", height, above=0), finite("z", z), integer("layers", layers, least=1)
-    nodes, flat = (v, t) if checked_order(order, middles) == 1 else quadratic(v, t, middles=middles)
+    nodes, flat = (v, t) if _checked_order(order, middles) == 1 else quadratic(v, t, middles=middles)
     n, levels = len(nodes), z + height * np.linspace(0, 1, layers + 1)
-    points = stacked(nodes, levels)
+    points = _stacked(nodes, levels)
     # Layer k stands on level k: the same nodes, k n further on.
     bottom = (flat + n * np.arange(layers)[:, None, None]).reshape(-1, flat.shape[1])
     cells = np.concatenate([bottom[:, :3], bottom[:, :3] + n], axis=1)
     if order == 2:
         half_way = (t + len(points) + len(v) * np.arange(layers)[:, None, None]).reshape(-1, 3)
-        points = np.concatenate([points, stacked(v, (levels[1:] + levels[:-1]) / 2)])
+        points = np.concatenate([points, _stacked(v, (levels[1:] + levels[:-1]) / 2)])
         cells = np.concatenate([cells, bottom[:, 3:], bottom[:, 3:] + n, half_way], axis=1)
     return points, cells, np.tile(labels.astype(np.int64), layers)
 
@@ -134,7 +134,7 @@ def quadratic(vertices: Floats, triangles: Ints, *, middles: ArrayLike | None = 
     return np.concatenate([vertices, between]), np.concatenate([triangles, sides + len(vertices)], axis=1)
 
 
-def checked_order(order: int, middles: ArrayLike | None) -> int:
+def _checked_order(order: int, middles: ArrayLike | None) -> int:
     """Return `order` if it is 1 or 2, and 2 where there are middles."""
     if order not in (1, 2) or isinstance(order, bool):
         raise ParameterError(f"order: expected 1 or 2, found {order!r}")
@@ -143,6 +143,6 @@ def checked_order(order: int, middles: ArrayLike | None) -> int:
     return order
 
 
-def stacked(nodes: Floats, levels: NDArray[Any]) -> Floats:
+def _stacked(nodes: Floats, levels: NDArray[Any]) -> Floats:
     """Return the nodes (k, 2) at each of the levels (l,), as (l k, 3), level by level."""
     return np.column_stack([np.tile(nodes, (len(levels), 1)), np.repeat(levels, len(nodes))])

@@ -18,8 +18,9 @@ from numpy.typing import NDArray
 from img2tri.arrays import Floats, Ints
 from img2tri.errors import MeshError
 from img2tri.types import Frame
-from img2tri.views.formats.solvers.vtu_vtkhdf import VTK_TYPES
-from img2tri.views.objects.named_sets import FRAME, OUTER, region_names
+from img2tri.views.formats.vtp_vtu import VTK_TYPES
+from img2tri.views.objects.sets.named_sets import interfaces_by_name, pieces_by_name, region_names
+from img2tri.views.objects.sets.set_numbers import set_tags
 from img2tri.views.objects.solver_cells import CELL_SIDES, Cells, flat_cells, solid_cells
 
 
@@ -47,7 +48,7 @@ def from_dataset(dataset: Any) -> Cells:
     >>> plane = pyvista.Plane(i_resolution=2, j_resolution=1).triangulate()
     >>> made = from_dataset(plane)
     >>> made.kind, len(made.cells), made.names, list(made.sides)
-    ('triangle', 4, {1: 'region_1'}, ['outer'])
+    ('triangle', 4, {1: 'region_1'}, ['outer', 'outer_1', 'outer_2', 'outer_3', 'outer_4'])
     """
     points, cells, kind = _arrays(dataset)
     data = dataset.cell_data
@@ -63,10 +64,10 @@ def from_dataset(dataset: Any) -> Cells:
     whole = {name: values for name, values in fields.items() if values.dtype.kind in "iu"}
     names |= {int(values[0]): name for name, values in whole.items() if values.shape == (1,) and values[0] in regions}
     options: dict[str, Any] = {"names": names, "bounds": frame.bounds if frame else None, "field_data": texts}
-    if kind.startswith("triangle"):
-        made = _flat_mesh(points, cells, regions, options)
-    else:
-        made = _layered_solid(points, cells, kind, regions, options)
+    arrays = {name: np.asarray(data[name]) for name in data if name != "region"}
+    made = _flat_mesh(points, cells, regions, options) if kind.startswith("triangle") else _solid(points, cells, kind, regions, options)
+    nodes = {name: np.asarray(dataset.point_data[name]) for name in dataset.point_data}
+    made = replace(made, cell_data=_numbers(arrays), point_data=_numbers(nodes))
     widths = {len(side) for side in CELL_SIDES[kind]}
     facets = {name: values for name, values in whole.items() if values.ndim == 2 and values.shape[1] in widths}
     return _with_facets(made, facets) if facets else made
@@ -115,6 +116,11 @@ def _arrays(dataset: Any) -> tuple[Floats, Ints, str]:
     return np.asarray(dataset.points, np.float64), np.asarray(rows, np.int64), kinds[number]
 
 
+def _numbers(arrays: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
+    """Leave out what VTK made for itself, and what is no number."""
+    return {name: values for name, values in arrays.items() if values.dtype.kind in "biuf" and not name.startswith("vtk")}
+
+
 def _flat_mesh(points: Floats, cells: Ints, regions: Ints, options: dict[str, Any]) -> Cells:
     z = points[:, 2]
     if not np.ptp(z) <= 1e-6 * np.ptp(points[:, :2], axis=0).max():
@@ -126,8 +132,10 @@ def _flat_mesh(points: Floats, cells: Ints, regions: Ints, options: dict[str, An
     return flat_cells(points[:, :2], turned, regions, z=float(z[0]), **options)
 
 
-def _layered_solid(points: Floats, cells: Ints, kind: str, regions: Ints, options: dict[str, Any]) -> Cells:
+def _solid(points: Floats, cells: Ints, kind: str, regions: Ints, options: dict[str, Any]) -> Cells:
     """Find the layers of wedges: as many at the bottom as there are triangles, each other one upon the one before."""
+    if kind.startswith("tetra"):
+        return Cells(points, cells, kind, regions, region_names(regions, options["names"]), {}, {}, {}, options["field_data"])
     base, top, z = cells[:, :3], cells[:, 3:6], points[:, 2]
     m = int(np.all(z[base] == z.min(), axis=1).sum())
     layered = m > 0 and len(cells) % m == 0 and np.array_equal(base[m:], top[:-m]) and np.array_equal(regions[m:], regions[:-m])
@@ -141,16 +149,16 @@ def _with_facets(made: Cells, facets: dict[str, NDArray[Any]]) -> Cells:
     sides = {name: _sides(made, nodes) for name, nodes in facets.items()}
     if any(rows is None for rows in sides.values()):
         return made
-    tags = {name: i for i, name in enumerate((*FRAME, OUTER), 1)}
-    tags |= {name: i for i, name in enumerate((name for name in sides if name not in tags), len(tags) + 1)}
-    return replace(made, sides={name: rows for name, rows in sides.items() if rows is not None}, tags={name: tags[name] for name in sides})
+    known = {name: rows for name, rows in sides.items() if rows is not None}
+    part_of, between = pieces_by_name(known), interfaces_by_name(known, made.names)
+    return replace(made, sides=known, tags=set_tags(known, made.ids.values()), part_of=part_of, between=between)
 
 
 def _sides(made: Cells, nodes: NDArray[Any]) -> Ints | None:
     """Return the cell and the side each facet is, the first where two cells have it, or None if one of them is no side."""
     width = nodes.shape[1]
     numbers = [i for i, side in enumerate(CELL_SIDES[made.kind]) if len(side) == width]
-    corners = width if made.kind in ("triangle", "wedge") else (width + 1) // 2
+    corners = width if made.kind in ("triangle", "wedge", "tetra") else (width + 1) // 2
     local = np.array([CELL_SIDES[made.kind][i] for i in numbers])[:, :corners]
     own = np.sort(made.cells[:, local].reshape(-1, corners), axis=1)
     each, which = np.unique(np.concatenate([own, np.sort(nodes[:, :corners], axis=1)]), axis=0, return_inverse=True)

@@ -14,20 +14,22 @@ Writers: .msh, .inp, .bdf and .xdmf, of a PolyData of triangles in a plane, or a
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-from xml.sax.saxutils import unescape
 
 from img2tri.errors import FileError, MeshError
-from img2tri.views.formats.solvers import read_inp as reading_inp
-from img2tri.views.formats.solvers import read_msh_bdf as reading
+from img2tri.views.formats.readers import read_inp as reading_inp
+from img2tri.views.formats.readers import read_msh_bdf as reading
+from img2tri.views.formats.readers.found import Found
+from img2tri.views.formats.readers.read_xdmf import is_plain_xdmf, parse_xdmf
 from img2tri.views.formats.solvers.plain_text import MARK
 from img2tri.views.formats.solvers.save_for_solvers import export
-from img2tri.views.formats.solvers.vtu_vtkhdf import array_name, grid_of
-from img2tri.views.formats.solvers.xdmf import ENDS_FILE, FACETS_FILE
+from img2tri.views.formats.solvers.vtu_vtkhdf import grid_of
+from img2tri.views.objects.solver_cells import Cells
 from img2tri.views.plugin.dataset_to_cells import from_dataset
 
 if TYPE_CHECKING:
@@ -78,18 +80,11 @@ def read_xdmf(path: str) -> Any:
     import pyvista
 
     file = _local(path)
+    if is_plain_xdmf(file.read_bytes()):
+        with suppress(MeshError):  # it holds other cells: facets by themselves
+            return _grid_of(parse_xdmf(file))
     grid = _read_xdmf_grid(file)
-    if isinstance(grid, pyvista.UnstructuredGrid) and "region" in grid.cell_data:
-        for name, number in _xdmf_names(file).items():
-            label = re.fullmatch(r"region_(-?\d+)", name)  # labels below 1 are written as other numbers
-            grid["region"][grid["region"] == number] = int(label[1]) if label else number
-            grid.field_data[array_name(name)] = [int(label[1]) if label else number]
-        for beside in (file.with_stem(file.stem + ending) for ending in (FACETS_FILE, ENDS_FILE)):
-            if beside.exists() and (facets := _read_xdmf_grid(beside)).n_points == grid.n_points:
-                nodes = facets.cell_connectivity.reshape(facets.n_cells, -1)
-                for name, number in _xdmf_names(beside).items():
-                    grid.field_data[array_name(name)] = nodes[facets["boundary"] == number]
-    return grid
+    return pyvista.wrap(grid)
 
 
 def write_msh(dataset: pyvista.DataObject, path: str, *, version: str = "4.1") -> None:
@@ -98,18 +93,28 @@ def write_msh(dataset: pyvista.DataObject, path: str, *, version: str = "4.1") -
 
 
 def write_inp(dataset: pyvista.DataObject, path: str, *, deck: bool = False, plane: str = "stress") -> None:
-    """Write the format of Abaqus and CalculiX; options as in `img2tri.views.formats.solvers.inp.inp`."""
-    export(path, from_dataset(dataset), deck=deck, plane=plane)
+    """Write the format of Abaqus and CalculiX, options as `img2tri.views.formats.solvers.inp.inp`; arrays of the user are an error."""
+    export(path, _without_quality(from_dataset(dataset)), deck=deck, plane=plane)
 
 
 def write_bdf(dataset: pyvista.DataObject, path: str) -> None:
-    """Write the bulk data of Nastran."""
-    export(path, from_dataset(dataset))
+    """Write the bulk data of Nastran; arrays of the user have no place in it, and are an error."""
+    export(path, _without_quality(from_dataset(dataset)))
 
 
 def write_xdmf(dataset: pyvista.DataObject, path: str) -> None:
     """Write XDMF, with a time, so that pyvista reads it back; the named facets go to a second file, ``_facets`` behind its stem."""
     export(path, from_dataset(dataset), timed=True)
+
+
+def write_mesh(dataset: pyvista.DataObject, path: str) -> None:
+    """Write the format of Medit and FreeFem; arrays of the user have no place in it, and are an error."""
+    export(path, _without_quality(from_dataset(dataset)))
+
+
+def _without_quality(made: Cells) -> Cells:
+    """Leave out q, which img2tri gives each triangle, for formats that have no place for values."""
+    return replace(made, cell_data={name: values for name, values in made.cell_data.items() if name != "q"})
 
 
 def _local(path: str) -> Path:
@@ -121,7 +126,7 @@ def _local(path: str) -> Path:
     return Path(path)
 
 
-def _read_found(path: str, reader: Callable[[bytes], reading.Found]) -> pyvista.DataObject:
+def _read_found(path: str, reader: Callable[[bytes], Found]) -> pyvista.DataObject:
     import pyvista
 
     data = _local(path).read_bytes()
@@ -134,7 +139,16 @@ def _read_found(path: str, reader: Callable[[bytes], reading.Found]) -> pyvista.
         # Whatever a damaged file makes the reader stumble over, it is the file that cannot be read.
         reason = str(problem) if isinstance(problem, (MeshError, ValueError)) else "it is damaged, or of another kind"
         raise FileError(f"{path}: {reason}" + ("" if by_meshio else "; with meshio installed, pyvista reads more kinds")) from problem
-    return grid_of(found.points, found.cells, found.kind, found.regions, found.names, found.facets)
+    return _grid_of(found)
+
+
+def _grid_of(found: Found) -> pyvista.UnstructuredGrid:
+    grid = grid_of(found.points, found.cells, found.kind, found.regions, found.names, found.facets)
+    for name, values in found.cell_data.items():
+        grid.cell_data[name] = values
+    for name, values in found.point_data.items():
+        grid.point_data[name] = values
+    return grid
 
 
 def _read_xdmf_grid(path: Path) -> Any:
@@ -150,9 +164,3 @@ def _read_xdmf_grid(path: Path) -> Any:
     reader.SetFileName(str(path))
     reader.Update()
     return pyvista.wrap(reader.GetOutputDataObject(0))
-
-
-def _xdmf_names(path: Path) -> dict[str, int]:
-    """Return the numbers by their names, as img2tri and meshio write them."""
-    maps = re.findall(r'<map key=("[^"]*"|\'[^\']*\') dim="\d">(\d+)</map>', path.read_text(encoding="utf-8"))
-    return {unescape(key[1:-1], {"&quot;": '"'}): int(number) for key, number in maps}

@@ -14,7 +14,9 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWrit
 
 from img2tri.errors import FileError, Img2triError, MeshError
 from img2tri.views.formats.save_load import SURFACE_FORMATS, load, save
-from img2tri.views.objects.to_pyvista import to_elements, to_pyvista
+from img2tri.views.formats.solvers.vtu_vtkhdf import to_grid
+from img2tri.views.objects.solver_cells import flat_cells
+from img2tri.views.objects.to_pyvista import to_pyvista
 
 READABLE = [suffix for suffix, form in SURFACE_FORMATS.items() if form.read]
 
@@ -87,7 +89,7 @@ def test_every_way_vtk_writes_xml_is_read(tmp_path, grid, compressed, wide, way)
     vertices, triangles = cells(np.ones((60, 80), bool))
     regions = np.arange(len(triangles)) % 5
     writer = vtkXMLUnstructuredGridWriter() if grid else vtkXMLPolyDataWriter()
-    writer.SetInputData((to_elements if grid else to_pyvista)(vertices, triangles, regions))
+    writer.SetInputData(to_grid(flat_cells(vertices, triangles, regions)) if grid else to_pyvista(vertices, triangles, regions))
     writer.SetFileName(str(tmp_path / ("a.vtu" if grid else "a.vtp")))
     {"ascii": writer.SetDataModeToAscii, "binary": writer.SetDataModeToBinary}.get(way, writer.SetDataModeToAppended)()
     writer.SetEncodeAppendedData(way != "raw")

@@ -14,7 +14,8 @@ from img2tri.views.objects.extrusion import extrude
 
 def test_a_ring_becomes_a_closed_solid_with_a_through_hole():
     vertices, triangles = ring()
-    points, faces, _ = extrude(vertices, triangles, 2.5, z=1.0)
+    solid = extrude(vertices, triangles, 2.5, z=1.0)
+    points, faces = solid.points, solid.faces
     assert points.shape == (48, 3)
     assert len(faces) == 2 * 24 + 2 * (16 + 8)
     assert is_closed(faces)
@@ -28,7 +29,8 @@ def test_a_ring_becomes_a_closed_solid_with_a_through_hole():
 
 def test_bottom_top_and_walls_look_outwards():
     vertices, triangles = ring()
-    points, faces, sources = extrude(vertices, triangles, 1)
+    solid = extrude(vertices, triangles, 1)
+    points, faces, sources = solid.points, solid.faces, solid.sources
     p, q, r = (points[faces[:, k]] for k in range(3))
     normal = np.cross(q - p, r - p)
     m = len(triangles)
@@ -41,7 +43,8 @@ def test_bottom_top_and_walls_look_outwards():
 
 def test_each_face_comes_from_the_triangle_it_lies_at():
     vertices, triangles, _ = strip()
-    points, faces, sources = extrude(vertices, triangles, 1)
+    solid = extrude(vertices, triangles, 1)
+    points, faces, sources = solid.points, solid.faces, solid.sources
     m = len(triangles)
     assert np.array_equal(sources[: 2 * m], np.tile(np.arange(m), 2))
     for face, source in zip(faces[2 * m :], sources[2 * m :], strict=True):
@@ -51,7 +54,8 @@ def test_each_face_comes_from_the_triangle_it_lies_at():
 
 def test_parts_that_touch_in_a_vertex_stay_closed():
     vertices, triangles = cells(np.array([[True, False, True], [False, True, False], [True, False, True]]))
-    points, faces, _ = extrude(vertices, triangles, 3)
+    solid = extrude(vertices, triangles, 3)
+    points, faces = solid.points, solid.faces
     assert is_closed(faces)
     assert len(points) == 2 * (len(vertices) + 4)
     assert euler(faces) == 5 * 2
@@ -62,7 +66,8 @@ def test_many_fans_around_one_vertex_stay_closed():
     turn = np.arange(12) * np.pi / 6
     vertices = np.concatenate([[[0, 0]], np.stack([np.cos(turn), np.sin(turn)], axis=1)])
     every_other = np.stack([np.zeros(6, int), np.arange(1, 12, 2), np.arange(2, 13, 2)], axis=1)
-    points, faces, _ = extrude(vertices, every_other, 1)
+    solid = extrude(vertices, every_other, 1)
+    points, faces = solid.points, solid.faces
     assert is_closed(faces)
     assert euler(faces) == 6 * 2
     assert len(points) == 2 * (13 + 5)
@@ -71,7 +76,8 @@ def test_many_fans_around_one_vertex_stay_closed():
 @given(nps.arrays(bool, st.tuples(st.integers(1, 6), st.integers(1, 6))).filter(np.any), st.floats(0.01, 100))
 def test_any_set_of_cells_becomes_a_closed_solid(mask, height):
     vertices, triangles = cells(mask)
-    points, faces, sources = extrude(vertices, triangles, height)
+    solid = extrude(vertices, triangles, height)
+    points, faces, sources = solid.points, solid.faces, solid.sources
     assert is_closed(faces)
     assert volume(points, faces) == pytest.approx(areas(vertices, triangles).sum() * height, rel=1e-9)
     components, holes = pixel_topology(mask)  # joined through sides, as the solid is

@@ -6,10 +6,11 @@ import sys
 import numpy as np
 import pytest
 from views.plates import STRIP_AREA, ring, strip
+from views.solver_meshes import elements
 
 from img2tri.errors import MeshError, ParameterError
 from img2tri.views.objects.flat_or_extruded import surface
-from img2tri.views.objects.to_pyvista import to_elements, to_pyvista
+from img2tri.views.objects.to_pyvista import to_pyvista
 from img2tri.views.objects.to_trimesh import to_trimesh
 
 
@@ -73,7 +74,7 @@ def test_pyvista_solid():
 
 def test_pyvista_grid():
     vertices, triangles, regions = strip()
-    made = to_elements(vertices, triangles, regions)
+    made = elements(vertices, triangles, regions)
     assert np.array_equal(made.cells_dict[5], triangles)
     assert made.points.dtype == np.float64
     assert np.array_equal(made.cell_data["region"], regions)
@@ -123,8 +124,12 @@ CORNER = ([[0, 0], [1, 0], [0, 1]], [[0, 1, 2]])
         ((CORNER[0], [[0, 1, 3]]), {}, "triangles: expected indices from 0 to 2, found 0 to 3"),
         ((CORNER[0], [[0, 1, -1]]), {}, "triangles: expected indices from 0 to 2, found -1 to 1"),
         ((*CORNER, [1, 2]), {}, r"regions: expected one number for each of 1 triangles, found shape \(2,\)"),
-        ((*CORNER, [1.5]), {}, "regions: expected whole numbers within 32 bits, found float64"),
-        ((*CORNER, [2**40]), {}, "regions: expected whole numbers within 32 bits, found int64 from 1099511627776"),
+        ((*CORNER, [1.5]), {}, "regions: expected whole numbers within 64 bits, found float64"),
+        (
+            (*CORNER, np.array([2**63], np.uint64)),
+            {},
+            "regions: expected whole numbers within 64 bits, found uint64 from 9223372036854775808",
+        ),
         (CORNER, {"cell_data": {"q": [1, 2]}}, "q: expected one number for each of 1 triangles"),
         (CORNER, {"cell_data": {"q": ["good"]}}, "q: expected one number for each of 1 triangles"),
     ],

@@ -10,12 +10,12 @@ from img2tri import MeshError
 from img2tri.views.objects.solver_cells import CELL_SIDES, flat_cells, solid_cells
 from img2tri.views.objects.wedges import quadratic, wedges
 
-SOLIDS = KINDS[2:]
+SOLIDS = KINDS[2:4]
 
 
 def corners_of(mesh, name):
     nodes = mesh.facets(name)
-    linear = mesh.kind in ("triangle", "wedge")
+    linear = mesh.kind in ("triangle", "wedge", "tetra")
     return mesh.points[nodes if linear else nodes[:, : (nodes.shape[1] + 1) // 2]]
 
 

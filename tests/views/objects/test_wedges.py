@@ -8,12 +8,12 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as nps
 from oracles import areas, edge_counts
 from views.plates import STRIP_AREA, cells, is_closed, ring, strip, volume
+from views.solver_meshes import elements
 
 from img2tri.arrays import unique_edges
 from img2tri.errors import MeshError, ParameterError
 from img2tri.triangles.tools import topology
 from img2tri.views.objects.region_borders import bordering
-from img2tri.views.objects.to_pyvista import to_elements
 from img2tri.views.objects.wedges import quadratic, wedges
 
 GAUSS = np.array([-1, 1]) / np.sqrt(3)
@@ -83,7 +83,7 @@ def test_layers_are_conforming():
 def test_vtk_agrees_on_order_and_volume(order):
     vertices, triangles, regions = strip()
     q = np.linspace(0.5, 1, len(triangles))
-    made = to_elements(vertices, triangles, regions, height=2, layers=2, order=order, z=1, cell_data={"q": q}, field_data={"units": "mm"})
+    made = elements(vertices, triangles, regions, height=2, layers=2, order=order, z=1, cell_data={"q": q}, field_data={"units": "mm"})
     assert set(made.celltypes.tolist()) == {{1: pv.CellType.WEDGE, 2: pv.CellType.QUADRATIC_WEDGE}[order]}
     assert made.volume == pytest.approx(2 * STRIP_AREA)
     assert np.all(made.compute_cell_sizes(length=False, area=False)["Volume"] > 0)
@@ -109,7 +109,7 @@ def test_nodes_between_lie_between():
 
 def test_flat_quadratic_triangles():
     vertices, triangles, regions = strip()
-    made = to_elements(vertices, triangles, regions, order=2, z=4)
+    made = elements(vertices, triangles, regions, order=2, z=4)
     assert set(made.celltypes.tolist()) == {pv.CellType.QUADRATIC_TRIANGLE}
     cell = made.cells_dict[pv.CellType.QUADRATIC_TRIANGLE]
     assert np.array_equal(cell[:, :3], triangles)
@@ -118,7 +118,7 @@ def test_flat_quadratic_triangles():
     assert len(made.points) == len(vertices) + len(edge_counts(triangles)[0])
     assert np.all(made.points[:, 2] == 4)
     assert made.area == pytest.approx(STRIP_AREA)
-    linear = to_elements(vertices, triangles, regions)
+    linear = elements(vertices, triangles, regions)
     assert linear.celltypes.tolist() == [pv.CellType.TRIANGLE] * len(triangles)
     assert np.array_equal(linear.cell_data["region"], regions)
 
@@ -185,11 +185,6 @@ def test_options_that_cannot_be_are_refused(error, options, words):
     vertices, triangles, regions = strip()
     with pytest.raises(error, match=words):
         wedges(vertices, triangles, regions, **options)
-
-
-def test_a_flat_mesh_has_no_layers():
-    with pytest.raises(ParameterError, match="layers: expected 1 for a flat mesh, found 2; give a height too"):
-        to_elements(*strip(), layers=2)
 
 
 def test_arrays_that_are_no_mesh_are_refused():

@@ -51,7 +51,7 @@ def test_names_and_frame_are_taken_from_what_img2tri_wrote():
 def test_what_is_not_known_is_found():
     mesh = from_dataset(poly())
     assert mesh.names == {-1: "region_-1", 4: "region_4"}
-    assert set(mesh.sides) == {"outer", "hole_1", "hole_2", "region_-1__region_4"}
+    assert set(mesh.wholes) == {"outer", "hole_1", "hole_2", "region_-1__region_4"}
     bare = poly()
     del bare.cell_data["region"]
     assert from_dataset(bare).names == {1: "region_1"}
@@ -62,7 +62,7 @@ def test_wedges_in_layers_are_recognised_without_named_parts(kind):
     grid = to_grid(made(kind))
     grid.clear_field_data()
     mesh = from_dataset(grid)
-    assert set(mesh.sides) == {"outer", "hole_1", "hole_2", "region_-1__region_4", "z_min", "z_max"}
+    assert set(mesh.wholes) == {"outer", "hole_1", "hole_2", "region_-1__region_4", "z_min", "z_max"}
     assert len(mesh.sides["hole_1"]) == 2 * 6
 
 
@@ -108,7 +108,7 @@ def test_triangles_seen_from_below_are_turned():
         (pv.Plane(), r"found other faces; use \.triangulate\(\)"),
         (pv.Sphere(), "expected triangles in a plane of constant z, found z from -0.5 to 0.5"),
         (pv.ImageData(dimensions=(3, 3, 1)), "expected a PolyData of triangles, or an UnstructuredGrid .* found ImageData"),
-        (pv.UnstructuredGrid({10: np.array([[0, 1, 2, 3]])}, np.eye(4)[:, :3]), "found UnstructuredGrid with cells of the types 10"),
+        (pv.UnstructuredGrid({9: np.array([[0, 1, 2, 3]])}, np.eye(4)[:, :3]), "found UnstructuredGrid with cells of the types 9"),
     ],
 )
 def test_other_objects_are_refused(dataset, words):

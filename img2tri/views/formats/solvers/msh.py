@@ -1,25 +1,46 @@
 """MSH, the format of Gmsh, version 4.1 or 2.2, in text: regions and sets of facets are physical groups with their names.
 
-Physical groups and elementary entities have the same numbers: a region that of its label, or, as the format counts from 1, the next free
-one for labels below 1; a set of facets its tag. Cells keep their order. The format is described in the Gmsh manual, "MSH file format".
-Written here because meshio refuses to write triangles and edges into one file of version 4.1.
+Physical groups have the numbers of `img2tri.views.objects.sets.set_numbers`: those of regions are their labels wherever they can be, and
+no set has the number of a region, as many readers go by numbers without their dimension. Nodes and elements are numbered in the order of
+the file, which some readers take for granted: nodes as in the mesh, facets before cells, cells by region.
+
+An entity is a piece of a set, or a region; in version 4.1 a piece is in the group of its set and in one of its own, in version 2.2, where
+an element has one group, its number is that of its entity. Nodes of periodic meshes are paired in ``$Periodic``, values of cells and nodes
+are ``$ElementData`` and ``$NodeData``. The format is described in the manual of Gmsh, "MSH file format". Written here because meshio
+refuses to write triangles and edges into one file of version 4.1.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from img2tri.arrays import Floats, Ints
 from img2tri.errors import ParameterError
-from img2tri.views.formats.solvers.plain_text import MARK, comment_lines, numbered
-from img2tri.views.formats.stl_ply_obj_off import rows
+from img2tri.views.formats.number_rows import real_rows, whole_rows
+from img2tri.views.formats.solvers.plain_text import MARK, comment_lines, label_table
+from img2tri.views.objects.periodic_nodes import node_pairs
 from img2tri.views.objects.solver_cells import Cells
 
 # Gmsh's number of each type of element, and its order of the nodes where that is not the one of VTK.
-GMSH_TYPES = {"triangle": 2, "triangle6": 9, "wedge": 6, "wedge15": 18}
-GMSH_ORDERS = {"wedge15": [0, 1, 2, 3, 4, 5, 6, 8, 12, 7, 13, 14, 9, 11, 10]}
+GMSH_TYPES = {"triangle": 2, "triangle6": 9, "wedge": 6, "wedge15": 18, "tetra": 4, "tetra10": 11}
+GMSH_ORDERS = {"wedge15": [0, 1, 2, 3, 4, 5, 6, 8, 12, 7, 13, 14, 9, 11, 10], "tetra10": [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]}
 _FACET_TYPES = {(1, 2): 1, (1, 3): 8, (2, 3): 2, (2, 4): 3, (2, 6): 9, (2, 8): 16}  # by dimension and number of nodes
 VERSIONS = ("4.1", "2.2")
+
+
+@dataclass(frozen=True, eq=False)
+class _Entity:
+    """Elements of one kind: its dimension, its number, the numbers of its groups, Gmsh's type, and the nodes (k, c) from 1."""
+
+    dimension: int
+    number: int
+    groups: tuple[int, ...]
+    type: int
+    elements: Ints
 
 
 def msh(made: Cells, *, version: str = "4.1") -> dict[str, bytes]:
@@ -40,81 +61,97 @@ def msh(made: Cells, *, version: str = "4.1") -> dict[str, bytes]:
     Raises
     ------
     ParameterError
-        If the version is another.
+        If the version is another, or an array has more than nine values for each cell or node.
     """
     if version not in VERSIONS:
         raise ParameterError(f"version: expected '4.1' or '2.2', found {version!r}")
-    groups = _groups(made)
+    inside, members = 3 if made.solid else 2, made.members()
+    names = [(inside - 1, made.tags[name], name) for name in made.sides if version == "4.1" or name not in made.part_of]
+    names += [(inside, made.ids[label], name) for label, name in made.names.items()]
+    entities = _entities(made, members)
     lines = ["$MeshFormat", f"{version} 0 8", "$EndMeshFormat"]
-    lines += ["$Comments", MARK, *comment_lines(made.texts, ""), "$EndComments"]
-    names = ['{} {} "{}"'.format(*key, _unquoted(name)) for key, (name, *_) in groups.items()]
-    lines += ["$PhysicalNames", str(len(names)), *names, "$EndPhysicalNames"]
-    lines += _write_version_4(made.points, groups) if version == "4.1" else _write_version_2(made.points, groups)
-    return {"": ("\n".join(lines) + "\n").encode()}
+    lines += ["$Comments", MARK, *comment_lines(made.texts | label_table(made), ""), "$EndComments"]
+    lines += ["$PhysicalNames", str(len(names)), *(f'{d} {number} "{_unquoted(name)}"' for d, number, name in names), "$EndPhysicalNames\n"]
+    body = _write_version_4(made.points, entities) if version == "4.1" else _write_version_2(made.points, entities)
+    cells = np.concatenate([np.arange(len(made.cells))[:0], *members.values()])
+    facets = sum(len(e.elements) for e in entities if e.dimension < inside)
+    data = [_data("ElementData", name, values[cells], facets) for name, values in made.cell_data.items()]
+    data += [_data("NodeData", name, values, 0) for name, values in made.point_data.items()]
+    return {"": "".join(["\n".join(lines), *body, _periodic(made), *data]).encode()}
 
 
-_Groups = dict[tuple[int, int], tuple[str, Ints, Ints]]
-
-
-def _groups(made: Cells) -> _Groups:
-    """Return (dimension, number) -> name, elements and their numbers; numbers of nodes begin with 1.
-
-    Facets come first. The cells are numbered after them in the order of the mesh, whatever their group.
-    """
-    inside, count = 3 if made.solid else 2, 0
-    groups: _Groups = {}
+def _entities(made: Cells, members: dict[int, Ints]) -> list[_Entity]:
+    """Return the entities, facets first."""
+    inside, entities = 3 if made.solid else 2, []
+    split = set(made.part_of.values())
     for name in made.sides:
-        facets = made.facets(name) + 1
-        groups[inside - 1, made.tags[name]] = name, facets, count + 1 + np.arange(len(facets))
-        count += len(facets)
+        if name in split:
+            continue
+        elements = made.facets(name) + 1
+        groups = (made.tags[made.part_of[name]], made.tags[name]) if name in made.part_of else (made.tags[name],)
+        kind = _FACET_TYPES[inside - 1, elements.shape[1]]
+        entities.append(_Entity(inside - 1, made.tags[name], groups, kind, elements))
     cells = made.cells[:, GMSH_ORDERS.get(made.kind, slice(None))] + 1
-    for label, name in made.names.items():
-        mine = np.flatnonzero(made.regions == label)
-        groups[inside, made.ids[label]] = name, cells[mine], count + 1 + mine
-    return groups
+    for label, mine in members.items():
+        number = made.ids[label]
+        entities.append(_Entity(inside, number, (number,), GMSH_TYPES[made.kind], cells[mine]))
+    return entities
 
 
-def _type(dimension: int, elements: Ints, inside: int) -> int:
-    """Return Gmsh's number of the type of some elements; `inside` is the dimension of the cells."""
-    nodes = elements.shape[1]
-    if dimension < inside:
-        return _FACET_TYPES[dimension, nodes]
-    return GMSH_TYPES[{(2, 3): "triangle", (2, 6): "triangle6", (3, 6): "wedge", (3, 15): "wedge15"}[inside, nodes]]
+def _numbered(elements: Ints, first: int, *others: int) -> Ints:
+    """Put the number of each element, counted from `first`, and what is the same for all in front of its nodes."""
+    k = len(elements)
+    return np.column_stack([np.arange(first, first + k), *(np.full(k, other) for other in others), elements])
 
 
-def _write_version_2(points: Floats, groups: _Groups) -> list[str]:
-    lines = ["$Nodes", str(len(points)), *numbered("{} {!r} {!r} {!r}", points, np.arange(1, len(points) + 1)), "$EndNodes"]
-    lines += ["$Elements", str(sum(len(elements) for _, elements, _ in groups.values()))]
-    inside = max(groups)[0]
-    for (dimension, group), (_, elements, numbers) in groups.items():
-        template = "{} {} 2 {} {}" + " {}" * elements.shape[1]
-        lines += numbered(template, elements, numbers, _type(dimension, elements, inside), group, group)
-    return [*lines, "$EndElements"]
+def _write_version_2(points: Floats, entities: list[_Entity]) -> list[str]:
+    n, first, parts = len(points), 1, []
+    for e in entities:
+        parts.append(whole_rows(_numbered(e.elements, first, e.type, 2, e.groups[0], e.number)))
+        first += len(e.elements)
+    numbers, places = whole_rows(np.arange(1, n + 1)[:, None]).split("\n"), real_rows(points).split("\n")
+    nodes = "".join(f"{number} {place}\n" for number, place in zip(numbers[:-1], places[:-1], strict=True))
+    return [f"$Nodes\n{n}\n", nodes, f"$EndNodes\n$Elements\n{first - 1}\n", *parts, "$EndElements\n"]
 
 
-def _write_version_4(points: Floats, groups: _Groups) -> list[str]:
-    """Nodes belong to the first entity that has them, facets before cells: so those on a boundary are known to be there."""
-    owner = np.full(len(points), len(groups))
-    for i, (_, elements, _) in reversed(list(enumerate(groups.values()))):
-        owner[elements.ravel() - 1] = i
-    order = np.argsort(owner, kind="stable")
-    counts = np.bincount(owner, minlength=len(groups))[: len(groups)]
-    mine = np.split(order[: counts.sum()], np.cumsum(counts)[:-1])
-    inside, total = max(groups)[0], sum(len(elements) for _, elements, _ in groups.values())
+def _write_version_4(points: Floats, entities: list[_Entity]) -> list[str]:
+    """Write all nodes in one block, of the first cells, so that they keep their order."""
+    n, first, columns = len(points), 1, np.ascontiguousarray(points.T)
+    parts = ["$Entities\n", " ".join(str(sum(e.dimension == d for e in entities)) for d in range(4)), "\n"]
+    for e in entities:
+        corners = [column[e.elements.ravel() - 1] for column in columns]
+        box = " ".join(repr(float(x)) for x in (*map(np.min, corners), *map(np.max, corners)))
+        parts.append(f"{e.number} {box} {len(e.groups)} {' '.join(map(str, e.groups))} 0\n")
+    home = next(e for e in entities if e.dimension == entities[-1].dimension)
+    parts += ["$EndEntities\n$Nodes\n", f"1 {n} 1 {n}\n{home.dimension} {home.number} 0 {n}\n"]
+    parts += [whole_rows(np.arange(1, n + 1)[:, None]), real_rows(points)]
+    total = sum(len(e.elements) for e in entities)
+    parts += ["$EndNodes\n$Elements\n", f"{len(entities)} {total} 1 {total}\n"]
+    for e in entities:
+        parts += [f"{e.dimension} {e.number} {e.type} {len(e.elements)}\n", whole_rows(_numbered(e.elements, first))]
+        first += len(e.elements)
+    return [*parts, "$EndElements\n"]
 
-    lines = ["$Entities", " ".join(str(sum(dimension == d for dimension, _ in groups)) for d in range(4))]
-    for (_, group), (_, elements, _) in groups.items():
-        corners = points[elements.ravel() - 1]
-        box = " ".join(repr(float(x)) for x in (*corners.min(axis=0), *corners.max(axis=0)))
-        lines.append(f"{group} {box} 1 {group} 0")
-    lines += ["$EndEntities", "$Nodes", f"{len(groups)} {counts.sum()} 1 {len(points)}"]
-    for (dimension, group), nodes in zip(groups, mine, strict=True):
-        lines += [f"{dimension} {group} 0 {len(nodes)}", *map(str, (nodes + 1).tolist()), *rows("{!r} {!r} {!r}", points[nodes])]
-    lines += ["$EndNodes", "$Elements", f"{len(groups)} {total} 1 {total}"]
-    for (dimension, group), (_, elements, numbers) in groups.items():
-        lines.append(f"{dimension} {group} {_type(dimension, elements, inside)} {len(elements)}")
-        lines += numbered("{}" + " {}" * elements.shape[1], elements, numbers)
-    return [*lines, "$EndElements"]
+
+def _periodic(made: Cells) -> str:
+    """Pair the nodes of opposite sides, piece by piece: dimension, entity, the one it repeats, and both nodes of each pair."""
+    pairs = node_pairs(made)
+    if not pairs:
+        return ""
+    links = "".join(f"{2 if made.solid else 1} {p.tag} {p.master}\n0\n{len(p.nodes)}\n{whole_rows(p.nodes + 1)}" for p in pairs)
+    return f"$Periodic\n{len(pairs)}\n{links}$EndPeriodic\n"
+
+
+def _data(section: str, name: str, values: NDArray[Any], offset: int) -> str:
+    """Write values of elements, numbered after the first `offset`, or nodes: texts, a time, then step, components and count."""
+    array = values.reshape(len(values), -1).astype(np.float64)
+    width = next((c for c in (1, 3, 9) if c >= array.shape[1]), 0)
+    if not width:
+        raise ParameterError(f"{name}: expected at most 9 values each for .msh, found {array.shape[1]}; take it apart")
+    array = np.pad(array, ((0, 0), (0, width - array.shape[1])))
+    numbers, texts = whole_rows(np.arange(offset + 1, offset + 1 + len(array))[:, None]).split("\n"), real_rows(array).split("\n")
+    lines = "".join(f"{number} {text}\n" for number, text in zip(numbers[:-1], texts[:-1], strict=True))
+    return f'${section}\n1\n"{_unquoted(name)}"\n1\n0.0\n3\n0\n{width}\n{len(array)}\n{lines}$End{section}\n'
 
 
 def _unquoted(name: str) -> str:

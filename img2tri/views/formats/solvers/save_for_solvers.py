@@ -7,10 +7,12 @@ What each format holds of regions, sets of facets and their names::
     .inp      ELSET                     NSET and SURFACE                  of all
     .bdf      property numbers          SET1 of nodes                     comments
     .xdmf     tags                      tags, in a file of their own      Information
+    .mesh     labels of cells           labels of facets                  comments
     .vtu      cell array `region`       field data, nodes of facets       of the arrays
     .vtkhdf   cell array `region`       field data, nodes of facets       of the arrays
 
-Coordinates are float64 in all of them, as far as the columns of .inp and .bdf have room.
+Arrays of the user, values of cells or nodes, are in .msh, .xdmf, .vtu and .vtkhdf; the others have no place for them. Coordinates are
+float64 in all of them, as far as the columns of .inp and .bdf have room.
 """
 
 from __future__ import annotations
@@ -23,6 +25,7 @@ from img2tri.errors import ParameterError
 from img2tri.views.formats.atomic_write import known_suffix, store, writable
 from img2tri.views.formats.solvers.bdf import bdf
 from img2tri.views.formats.solvers.inp import inp
+from img2tri.views.formats.solvers.medit import medit
 from img2tri.views.formats.solvers.msh import msh
 from img2tri.views.formats.solvers.vtu_vtkhdf import vtkhdf, vtu
 from img2tri.views.formats.solvers.xdmf import xdmf
@@ -30,17 +33,19 @@ from img2tri.views.objects.solver_cells import Cells
 
 
 class Export(NamedTuple):
-    """Who writes a format: a mesh -> what comes behind the stem of each file, and its bytes. And the options it knows."""
+    """Who writes a format: a mesh -> what comes behind the stem of each file, and its bytes; its options; whether it holds arrays."""
 
     write: Callable[..., dict[str, bytes]]
     options: tuple[str, ...] = ()
+    arrays: bool = True
 
 
 EXPORTS = {
     ".msh": Export(msh, ("version",)),
-    ".inp": Export(inp, ("deck", "plane")),
-    ".bdf": Export(bdf),
+    ".inp": Export(inp, ("deck", "plane"), arrays=False),
+    ".bdf": Export(bdf, arrays=False),
     ".xdmf": Export(xdmf, ("timed",)),
+    ".mesh": Export(medit, arrays=False),
     ".vtu": Export(vtu),
     ".vtkhdf": Export(vtkhdf),
 }
@@ -62,7 +67,7 @@ def export(
     Parameters
     ----------
     path
-        Where to write: .msh, .inp, .bdf, .xdmf, .vtu or .vtkhdf. Beside ``femur.xdmf``, ``femur_facets.xdmf`` is written too.
+        Where to write: .msh, .inp, .bdf, .xdmf, .mesh, .vtu or .vtkhdf. Beside ``femur.xdmf``, ``femur_facets.xdmf`` is written too.
     made
         The mesh, see `img2tri.views.objects.solver_cells`.
     version
@@ -79,7 +84,8 @@ def export(
     FileError
         If the suffix is not known, or the file cannot be written.
     ParameterError
-        If an option has a value it cannot have, or is given for a format that does not know it.
+        If an option has a value it cannot have, or is given for a format that does not know it; if there are arrays the format has no
+        place for.
 
     Examples
     --------
@@ -97,6 +103,10 @@ def export(
         if name not in EXPORTS[suffix].options:
             homes = " or ".join(other for other, form in EXPORTS.items() if name in form.options)
             raise ParameterError(f"{name}: expected only with {homes}, found {value!r} for {os.fspath(path)}")
+    arrays = [*made.cell_data, *made.point_data]
+    if arrays and not EXPORTS[suffix].arrays:
+        homes = ", ".join(other for other, form in EXPORTS.items() if form.arrays)
+        raise ParameterError(f"data: expected no arrays for {suffix}, which has no place for them, found {', '.join(arrays)}; use {homes}")
     stem, dot = os.path.splitext(os.fspath(path))
     files = EXPORTS[suffix].write(made, **options)
     targets = {ending: writable(f"{stem}{ending}{dot}", EXPORTS) for ending in files}

@@ -19,16 +19,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from img2tri.arrays import Floats, Ints
 from img2tri.errors import FileError
-from img2tri.views.formats.vtp_vtu import vtu_of_grid
+from img2tri.views.formats.vtp_vtu import VTK_TYPES, vtu_file
 from img2tri.views.objects.solver_cells import Cells
 
 if TYPE_CHECKING:
     import pyvista
 
-VTK_TYPES = {"triangle": 5, "triangle6": 22, "wedge": 13, "wedge15": 26}
+_CHUNK = 4096
 # A message of the modification time in an object header of HDF5: type, size, flags, version, and the seconds.
 _STAMP = re.compile(rb"(\x12\x00\x08\x00.\x00\x00\x00\x01\x00\x00\x00)(....)", re.DOTALL)
 
@@ -47,6 +48,8 @@ def to_grid(made: Cells, *, texts: bool = True) -> pyvista.UnstructuredGrid:
     grid = grid_of(made.points, made.cells, made.kind, made.regions, made.names, facets)
     for name, values in made.cell_data.items():
         grid.cell_data[name] = values
+    for name, values in made.point_data.items():
+        grid.point_data[name] = values
     for name, text in made.texts.items() if texts else ():
         grid.field_data[name] = [text]
     grid.set_active_scalars("region", preference="cell")
@@ -60,7 +63,7 @@ def grid_of(
     import pyvista
 
     grid = pyvista.UnstructuredGrid({VTK_TYPES[kind]: cells}, points)
-    grid.cell_data["region"] = regions.astype(np.int32)
+    grid.cell_data["region"] = as_regions(regions)
     for label, name in names.items():
         grid.field_data[array_name(name)] = np.array([label])
     for name, nodes in facets.items():
@@ -76,7 +79,13 @@ def vtu(made: Cells) -> dict[str, bytes]:
     dict
         The bytes of the file, under "".
     """
-    return {"": vtu_of_grid(to_grid(made, texts=False), made.texts)}
+    fields = {array_name(name): np.array([label]) for label, name in made.names.items()}
+    fields |= {array_name(name): made.facets(name) for name in made.sides}
+    cell_data = {**made.cell_data, "region": as_regions(made.regions)}
+    whole = vtu_file(
+        made.points, made.cells, made.kind, cell_data=cell_data, point_data=made.point_data, field_data=fields, texts=made.texts
+    )
+    return {"": whole}
 
 
 def vtkhdf(made: Cells) -> dict[str, bytes]:
@@ -95,7 +104,9 @@ def vtkhdf(made: Cells) -> dict[str, bytes]:
         writer: Any = vtkHDFWriter()
         writer.SetInputData(to_grid(made))
         writer.SetFileName(str(path))
-        writer.SetChunkSize(min(25000, max(len(made.points), made.cells.size)))  # rows; each array takes whole chunks
+        # Each array, and so each named set, takes whole chunks of so many rows; what is empty in them is compressed to almost nothing.
+        writer.SetChunkSize(min(_CHUNK, max(len(made.points), made.cells.size)))
+        writer.SetCompressionLevel(1)
         if not writer.Write():
             raise FileError("VTK could not write the mesh, and does not say why")
         data = path.read_bytes()
@@ -105,6 +116,12 @@ def vtkhdf(made: Cells) -> dict[str, bytes]:
         return stamp[1] + (bytes(4) if int.from_bytes(stamp[2], "little") in times else stamp[2])
 
     return {"": _STAMP.sub(without, data)}
+
+
+def as_regions(labels: Ints) -> NDArray[np.signedinteger[Any]]:
+    """Return labels as int32, which every reader takes, or as int64 where one needs it."""
+    narrow = labels.size == 0 or (labels.min() >= -(2**31) and labels.max() < 2**31)
+    return labels.astype(np.int32 if narrow else np.int64)
 
 
 def array_name(name: str) -> str:

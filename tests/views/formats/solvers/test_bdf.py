@@ -8,8 +8,8 @@ import pytest
 from views.solver_meshes import KINDS, TAGS, TEXTS, gmsh, made, sizes
 
 from img2tri import MeshError
+from img2tri.views.formats.readers.read_msh_bdf import parse_bdf
 from img2tri.views.formats.solvers.bdf import bdf
-from img2tri.views.formats.solvers.read_msh_bdf import parse_bdf
 
 IDS = {"region_-1": 5, "bone": 4}
 tools = pytest.mark.tools
@@ -96,7 +96,7 @@ def test_texts_are_comments():
     lines = bdf(made("triangle"))[""].decode().splitlines()
     assert lines[:2] == ["$ written by img2tri", "$ units: mm"]
     comments = [line[2:] for line in lines[2 : lines.index("CEND")]]
-    assert "".join(line.removeprefix("   ") for line in comments) == f"img2tri: {TEXTS['img2tri']}"
+    assert "".join(line.removeprefix("   ") for line in comments) == f"img2tri: {TEXTS['img2tri']}" + 'labels: {"region_-1": -1}'
 
 
 FOREIGN = """$ by hand

@@ -5,11 +5,11 @@ from __future__ import annotations
 import meshio
 import numpy as np
 import pytest
-from views.solver_meshes import KINDS, TAGS, TEXTS, gmsh, made, plate, sizes
+from views.solver_meshes import KINDS, PIECES, TAGS, TEXTS, gmsh, made, plate, sizes
 
 from img2tri import MeshError, ParameterError
+from img2tri.views.formats.readers.read_msh_bdf import parse_msh
 from img2tri.views.formats.solvers.msh import msh
-from img2tri.views.formats.solvers.read_msh_bdf import parse_msh
 from img2tri.views.objects.solver_cells import flat_cells
 
 VERSIONS = ("4.1", "2.2")
@@ -46,6 +46,7 @@ def test_gmsh_finds_every_group_with_its_name_and_size(opened, kind, version):
     inside = 3 if mesh.solid else 2
     regions, sets = sizes(mesh.solid)
     found = {program.model.getPhysicalName(*group): group for group in program.model.getPhysicalGroups()}
+    sets = {name: size for name, size in sets.items() if version == "4.1" or name not in PIECES}
     assert found == {name: (inside, IDS[name]) for name in regions} | {name: (inside - 1, TAGS[name]) for name in sets}
     for name, size in {**regions, **sets}.items():
         total = 0.0
@@ -72,24 +73,28 @@ def test_gmsh_finds_every_element_upright(opened, kind):
 @tools
 def test_gmsh_finds_the_nodes_of_each_group(opened):
     program = opened(msh(made("triangle"))[""])
-    nodes = {name: program.model.mesh.getNodesForPhysicalGroup(1, tag)[0] for name, tag in TAGS.items() if "z" not in name}
     mesh = made("triangle")
+    nodes = {name: program.model.mesh.getNodesForPhysicalGroup(1, TAGS[name])[0] for name in mesh.sides}
     for name, tags in nodes.items():
         assert sorted(tags.tolist()) == (np.unique(mesh.facets(name)) + 1).tolist()
 
 
 @pytest.mark.parametrize("version", VERSIONS)
-@pytest.mark.parametrize("kind", KINDS[:3])  # meshio does not know wedges of 15 nodes
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "wedge15"])  # which meshio does not know
 def test_meshio_finds_cells_groups_and_names(tmp_path, kind, version):
     mesh = made(kind)
     (tmp_path / "a.msh").write_bytes(msh(mesh, version=version)[""])
     read = meshio.read(tmp_path / "a.msh")
     inside = 3 if mesh.solid else 2
-    expected = {name: [number, inside] for name, number in IDS.items()} | {name: [TAGS[name], inside - 1] for name in mesh.sides}
+    expected = {name: [number, inside] for name, number in IDS.items()} | {
+        name: [TAGS[name], inside - 1] for name in mesh.sides if version == "4.1" or name not in PIECES
+    }
     assert {name: list(values) for name, values in read.field_data.items()} == expected
     groups = np.concatenate(read.cell_data["gmsh:physical"])
     dimensions = np.concatenate([np.full(len(block.data), block.dim) for block in read.cells])
     for name, (number, dimension) in expected.items():
+        if name in PIECES:
+            continue  # meshio knows one group of an element
         count = len(mesh.sides[name]) if name in mesh.sides else (mesh.regions == (-1 if name == "region_-1" else 4)).sum()
         assert np.count_nonzero((groups == number) & (dimensions == dimension)) == count
     order = np.lexsort(read.points.T)
@@ -98,14 +103,16 @@ def test_meshio_finds_cells_groups_and_names(tmp_path, kind, version):
 
 @pytest.mark.parametrize("version", VERSIONS)
 @pytest.mark.parametrize("kind", KINDS)
-def test_our_own_reader_finds_everything_in_its_order(kind, version):
+def test_our_own_reader_finds_everything_by_region(kind, version):
     mesh = made(kind)
     found = parse_msh(msh(mesh, version=version)[""])
+    order = np.argsort(mesh.regions, kind="stable")
     assert np.array_equal(found.points, mesh.points)
-    assert np.array_equal(found.cells, mesh.cells)
+    assert np.array_equal(found.cells, mesh.cells[order])
     assert (found.kind, found.names) == (kind, mesh.names)
-    assert np.array_equal(found.regions, mesh.regions)
-    assert {name: rows.tolist() for name, rows in found.facets.items()} == {name: mesh.facets(name).tolist() for name in mesh.sides}
+    assert np.array_equal(found.regions, mesh.regions[order])
+    sets = {name: np.sort(mesh.facets(name), axis=0) for name in mesh.sides if version == "4.1" or name not in PIECES}
+    assert {name: np.sort(rows, axis=0).tolist() for name, rows in found.facets.items()} == {n: rows.tolist() for n, rows in sets.items()}
 
 
 def test_texts_are_comments_in_short_lines():
@@ -113,7 +120,7 @@ def test_texts_are_comments_in_short_lines():
     at = lines.index("$Comments")
     comments = lines[at + 1 : lines.index("$EndComments")]
     assert comments[:2] == ["written by img2tri", "units: mm"]
-    assert "".join(line.removeprefix("   ") for line in comments[2:]) == f"img2tri: {TEXTS['img2tri']}"
+    assert "".join(line.removeprefix("   ") for line in comments[2:]) == f"img2tri: {TEXTS['img2tri']}" + 'labels: {"region_-1": -1}'
     assert max(map(len, comments)) <= 80
 
 

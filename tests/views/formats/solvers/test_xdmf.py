@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 import pyvista as pv
 from children import PATIENCE
-from views.solver_meshes import KINDS, TAGS, TEXTS, made, python_with, sizes
+from views.solver_meshes import KINDS, PIECES, TAGS, TEXTS, made, plate, python_with, sizes
 
 from img2tri.views.formats.solvers.xdmf import xdmf
+from img2tri.views.objects.solver_cells import flat_cells
 
 IDS = {"region_-1": 5, "bone": 4}
 tools = pytest.mark.tools
@@ -59,8 +60,9 @@ def test_fenicsx_finds_every_part_with_its_size(tmp_path):
     found = [json.loads(line) for line in done.stdout.splitlines() if line.startswith("[")]
     assert len(found) == len(stems)
     areas, lengths = sizes(False)
+    lengths = {name: length for name, length in lengths.items() if name not in PIECES}
     for dimension, regions, border, between in found:
-        assert dimension == 2
+        assert dimension == 3  # the plate lies at z = 0.5
         assert regions == pytest.approx({str(IDS[name]): area for name, area in areas.items()})
         assert border == pytest.approx({str(TAGS[name]): 0 if "__" in name else length for name, length in lengths.items()}, abs=1e-12)
         assert between == pytest.approx({str(TAGS[name]): length if "__" in name else 0 for name, length in lengths.items()}, abs=1e-12)
@@ -76,18 +78,18 @@ def test_meshio_finds_cells_facets_tags_and_names(tmp_path, monkeypatch, kind):
     written(tmp_path, mesh)
     inside = 3 if mesh.solid else 2
     read = meshio.read(tmp_path / "a.xdmf")
-    assert np.array_equal(read.points, mesh.points if mesh.solid else mesh.points[:, :2])
+    assert np.array_equal(read.points, mesh.points)
     assert [block.type for block in read.cells] == [kind]
     assert np.array_equal(read.cells[0].data, mesh.cells)
     assert np.array_equal(read.cell_data["region"][0], np.where(mesh.regions == -1, 5, 4))
     assert {name: list(values) for name, values in read.field_data.items()} == {name: [number, inside] for name, number in IDS.items()}
     found = {}
-    for ending in ("_facets", "_ends")[: 1 + mesh.solid]:
+    for ending in ("_facets", "_ends")[: 1 + kind.startswith("wedge")]:
         part = meshio.read(tmp_path / f"a{ending}.xdmf")
         assert np.array_equal(part.points, read.points)
         for name, (number, dimension) in part.field_data.items():
             assert dimension == inside - 1
-            found[name] = part.cells[0].data[part.cell_data["boundary"][0] == number].tolist()
+            found[name] = part.cells[0].data[part.cell_data["piece" if name in PIECES else "boundary"][0] == number].tolist()
             assert number == TAGS[name]
     assert found == {name: mesh.facets(name).tolist() for name in mesh.sides}
 
@@ -103,14 +105,16 @@ def test_pyvista_reads_it_with_a_time(tmp_path, kind):
     assert np.array_equal(cells, mesh.cells)
     assert np.array_equal(read.cell_data["region"], np.where(mesh.regions == -1, 5, 4))
     facets = pv.XdmfReader(str(tmp_path / "a_facets.xdmf")).read()
-    assert facets.n_cells == sum(len(rows) for name, rows in mesh.sides.items() if name not in {"z_min", "z_max"})
+    apart = {*PIECES, *(("z_min", "z_max") if kind.startswith("wedge") else ())}
+    assert facets.n_cells == sum(len(rows) for name, rows in mesh.sides.items() if name not in apart)
 
 
-def test_z_is_gone_where_the_mesh_is_flat():
-    for kind in KINDS:
-        for data in xdmf(made(kind)).values():
-            geometry = ElementTree.fromstring(data).find(".//Geometry")
-            assert geometry.get("GeometryType") == ("XYZ" if kind.startswith("wedge") else "XY")
+@pytest.mark.parametrize("z", [0, 3])
+def test_z_is_there_unless_it_is_nothing(z):
+    for data in xdmf(flat_cells(*plate(), z=z)).values():
+        geometry = ElementTree.fromstring(data).find(".//Geometry")
+        assert geometry.get("GeometryType") == ("XYZ" if z else "XY")
+        assert {row.split()[2:] == ["3.0"] for row in geometry[0].text.strip().splitlines()} == {bool(z)}
 
 
 def test_the_time_changes_the_files():

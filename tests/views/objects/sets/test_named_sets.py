@@ -11,7 +11,7 @@ from views.plates import cells, ring
 from views.solver_meshes import AREAS, BOUNDS, LENGTHS, NAMES, SIZE, TAGS, plate
 
 from img2tri import MeshError, ParameterError, mesh_image
-from img2tri.views.objects.named_sets import FRAME, boundary_rings, named_sets
+from img2tri.views.objects.sets.named_sets import FRAME, boundary_rings, named_sets
 
 MAPS = {**specimens.MASKS, **specimens.LABELS}
 
@@ -36,7 +36,8 @@ def case(request):
 
 def test_every_edge_of_boundary_and_interfaces_is_in_one_set_and_no_other_edge_in_any(case):
     mesh, sets = case
-    every = [edge for edges in sets.edges.values() for edge in map(tuple, np.sort(edges, axis=1).tolist())]
+    wholes = [edges for name, edges in sets.edges.items() if name not in sets.part_of]
+    every = [edge for edges in wholes for edge in map(tuple, np.sort(edges, axis=1).tolist())]
     assert len(every) == len(set(every))
     inner = {name for name in sets.edges if "__" in name}
     assert joined(sets, sets.edges.keys() - inner) == as_sets(oracles.boundary(mesh.triangles))
@@ -95,6 +96,10 @@ def plate_sets(**options):
     return named_sets(*plate(), **{"bounds": BOUNDS, "names": NAMES, **options})
 
 
+def wholes(sets):
+    return {name: len(edges) for name, edges in sets.edges.items() if name not in sets.part_of}
+
+
 def test_the_sets_of_the_plate():
     sets = plate_sets()
     assert {name: len(edges) for name, edges in sets.edges.items()} == LENGTHS
@@ -104,10 +109,11 @@ def test_the_sets_of_the_plate():
 
 
 def test_tags_of_the_frame_do_not_depend_on_what_is_there():
-    assert plate_sets(bounds=None).tags == {"outer": 5, "hole_1": 6, "hole_2": 7, "region_-1__bone": 8}
-    assert plate_sets(bounds=(*BOUNDS[:2], BOUNDS[2] - SIZE, BOUNDS[3])).tags == {
-        "left": 1, "right": 2, "bottom": 3, "outer": 5, "hole_1": 6, "hole_2": 7, "region_-1__bone": 8,
-    }  # fmt: skip
+    plain = plate_sets(bounds=None)
+    expected = {"outer": 1005, "hole_1": 1011, "hole_2": 1012, "region_-1__bone": 1013}
+    assert {name: tag for name, tag in plain.tags.items() if name not in plain.part_of} == expected
+    wide = plate_sets(bounds=(*BOUNDS[:2], BOUNDS[2] - SIZE, BOUNDS[3])).tags
+    assert wide == {"left": 1001, "right": 1002, "bottom": 1003, **expected}
 
 
 def test_a_mesh_as_large_as_the_image_has_all_four_sides_and_no_outer():
@@ -115,7 +121,7 @@ def test_a_mesh_as_large_as_the_image_has_all_four_sides_and_no_outer():
     sets = named_sets(vertices, triangles, regions, bounds=(*vertices.min(axis=0), *vertices.max(axis=0)))
     assert {name: len(sets.edges[name]) for name in FRAME} == {"left": 4, "right": 4, "bottom": 5, "top": 5}
     assert "outer" not in sets.edges
-    assert [sets.tags[name] for name in FRAME] == [1, 2, 3, 4]
+    assert [sets.tags[name] for name in FRAME] == [1001, 1002, 1003, 1004]
 
 
 def test_without_a_frame_all_of_it_is_outer():
@@ -140,7 +146,7 @@ def test_names_are_the_users_and_unique():
 def test_no_interface_is_lost_if_names_read_alike():
     vertices, triangles = cells(np.ones((1, 4), bool))
     sets = named_sets(vertices, triangles, np.repeat([1, 2, 3, 4], 2), names={1: "a__b", 2: "c", 3: "a", 4: "b__c"})
-    assert sorted(sets.edges) == ["a__b__c", "a__b__c_3_4", "c__a", "outer"]
+    assert sorted(set(sets.edges).difference(sets.part_of)) == ["a__b__c", "a__b__c_3_4", "c__a", "outer"]
 
 
 def test_a_region_named_like_a_set_is_refused():
@@ -161,7 +167,7 @@ def test_a_hole_that_touches_the_outside_in_a_vertex_is_no_hole():
     mask = np.array([[1, 1, 1], [1, 0, 1], [1, 1, 0]], bool)
     vertices, triangles = cells(mask)
     sets = named_sets(vertices, triangles, np.ones(len(triangles), int))
-    assert {name: len(edges) for name, edges in sets.edges.items()} == {"outer": 16}
+    assert wholes(sets) == {"outer": 16}
     assert oracles.pixel_topology(mask)[1] == 0
 
 
@@ -170,7 +176,7 @@ def test_two_holes_that_touch_in_a_vertex_are_one():
     mask[1, 1] = mask[2, 2] = False
     vertices, triangles = cells(mask)
     sets = named_sets(vertices, triangles, np.ones(len(triangles), int))
-    assert {name: len(edges) for name, edges in sets.edges.items()} == {"outer": 16, "hole_1": 8}
+    assert wholes(sets) == {"outer": 16, "hole_1": 8}
     assert oracles.pixel_topology(mask)[1] == 1
 
 
@@ -187,7 +193,7 @@ def test_an_island_in_a_hole_is_outer():
     mask[2, 2] = True
     vertices, triangles = cells(mask)
     sets = named_sets(vertices, triangles, np.ones(len(triangles), int))
-    assert {name: len(edges) for name, edges in sets.edges.items()} == {"outer": 24, "hole_1": 12}
+    assert wholes(sets) == {"outer": 24, "hole_1": 12}
 
 
 def test_triangles_that_are_wound_differently_are_refused():

@@ -8,8 +8,9 @@ first of these that fits:
 3. ``outer``: it bounds the mesh otherwise. With the sides of the frame, this is all of the outer boundary.
 4. ``bone__cartilage``: on either side is a region; the one with the lower label comes first.
 
-So no edge is in two sets, as solvers want it that give each facet one tag. The tags are the same in every format, whichever sets there are:
-left 1, right 2, bottom 3, top 4, outer 5, the holes from 6, then the interfaces by their labels.
+Beside the whole there are its pieces, where there are several: ``left_1``, ``left_2``, ``outer_1``..., see
+`img2tri.views.objects.sets.set_pieces` for what is a piece and which comes first. Formats in which a facet has one tag give it that of the
+whole.
 
 An edge is a side of a triangle, numbered as in `img2tri.views.objects.side_twins`. A boundary ring is followed by going round its vertices
 from twin to twin, so that where a mesh touches itself in one vertex only, its parts stay apart, as they are for the pixels.
@@ -17,7 +18,7 @@ from twin to twin, so that where a mesh touches itself in one vertex only, its p
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,10 +26,11 @@ import numpy as np
 from img2tri.arrays import Bools, Floats, Ints
 from img2tri.errors import ParameterError
 from img2tri.views.objects.body_per_region import unique_names
+from img2tri.views.objects.sets.grouping import grouped
+from img2tri.views.objects.sets.set_numbers import FRAME, OUTER, file_numbers, set_tags
+from img2tri.views.objects.sets.set_pieces import connected_pieces, outer_pieces
 from img2tri.views.objects.side_twins import next_side, side_twins
 
-FRAME = ("left", "right", "bottom", "top")
-OUTER = "outer"
 _ON_FRAME = 1e-9  # how far from the frame, relative to the mesh and its place, a vertex still lies on it
 
 
@@ -50,6 +52,10 @@ class Sets:
         left.
     tags
         Name of each set of edges -> its number in files.
+    part_of
+        Name of each piece -> the name of the whole, which is a set too. All other sets have no edge in common.
+    between
+        Name of each interface -> the labels of its two regions.
     """
 
     labels: dict[str, int]
@@ -57,6 +63,8 @@ class Sets:
     sides: dict[str, Ints]
     edges: dict[str, Ints]
     tags: dict[str, int]
+    part_of: dict[str, str]
+    between: dict[str, tuple[int, int]]
 
     def __repr__(self) -> str:
         parts = [("regions", self.regions), ("edges", self.sides)]
@@ -104,46 +112,69 @@ def named_sets(
     >>> sets
     Sets: regions bone (1), region_7 (1); edges left (1), right (1), bottom (1), outer (1), bone__region_7 (1)
     >>> sets.edges["bone__region_7"].tolist(), sets.tags["bone__region_7"]
-    ([[2, 0]], 6)
+    ([[2, 0]], 1011)
     """
     called = region_names(regions, names)
     twins = side_twins(triangles, len(vertices))
-    free = np.flatnonzero(twins < 0)
-    start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
-    inside = np.flatnonzero(twins >= 0)
-    inside = inside[regions[inside // 3] < regions[twins[inside] // 3]]
+    free, following, ring, area = _boundary(vertices, triangles, twins)
+    start, end = triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
+    a, b = start[free], end[free]
 
     found: dict[str, Ints] = {}
+    part_of: dict[str, str] = {}
     kind = np.full(len(free), -1)
-    for i, on in enumerate(_on_frame(vertices, start[free], end[free], bounds)):
+    for i, on in enumerate(_on_frame(vertices, a, b, bounds)):
         kind[on] = i
-        found[FRAME[i]] = free[kind == i]
-    _, ring, area = boundary_rings(vertices, triangles, twins)
-    found[OUTER] = free[(kind < 0) & (area[ring] >= 0)]
+    for i, name in enumerate(FRAME):
+        found[name] = free[kind == i]
+        pieces = connected_pieces(a[kind == i], b[kind == i], vertices[:, 1 - i // 2])
+        part_of |= dict.fromkeys(_split(found, name, pieces), name)
+    outer = (kind < 0) & (area[ring] >= 0)
+    found[OUTER] = free[outer]
+    part_of |= dict.fromkeys(_split(found, OUTER, outer_pieces(vertices, a, b, following, outer, ring, area)[outer]), OUTER)
     holes = np.flatnonzero(area < 0)
     # The area of a hole is negative, so that of the largest one comes first.
     for i, hole in enumerate(holes[np.argsort(area[holes], kind="stable")].tolist(), 1):
         found[f"hole_{i}"] = free[(kind < 0) & (ring == hole)]
-    pairs = np.stack([regions[inside // 3], regions[twins[inside] // 3]], axis=1)
-    each, pair = np.unique(pairs, axis=0, return_inverse=True)
-    order = np.argsort(pair.ravel(), kind="stable")
-    for (a, b), sides in zip(each.tolist(), np.split(inside[order], np.cumsum(np.bincount(pair.ravel()))[:-1]), strict=False):
-        name = f"{called[a]}__{called[b]}"
-        found[name if name not in found else f"{name}_{a}_{b}"] = sides
 
-    tags = {name: i for i, name in enumerate((*FRAME, OUTER), 1)}
-    tags |= {name: i for i, name in enumerate((name for name in found if name not in tags), len(tags) + 1)}
-    found = {name: sides for name, sides in found.items() if len(sides)}
+    inside = np.flatnonzero(twins >= 0)
+    inside = inside[regions[inside // 3] < regions[twins[inside] // 3]]
+    numbers = np.searchsorted(list(called), regions)
+    pairs, members = grouped(numbers[inside // 3] * len(called) + numbers[twins[inside] // 3])
+    between: dict[str, tuple[int, int]] = {}
+    labels = list(called)
+    for pair, rows in zip(pairs.tolist(), members, strict=True):
+        one, other = labels[pair // len(labels)], labels[pair % len(labels)]
+        name = f"{called[one]}__{called[other]}"
+        name = name if name not in found else f"{name}_{one}_{other}"
+        found[name], between[name] = inside[rows], (one, other)
+
+    found = {name: found[name] for name in [*(name for name in found if name not in part_of), *part_of] if len(found[name])}
     for label, name in called.items():
         if name in found:
             raise ParameterError(f"names: expected names other than those of sets of edges, found {name!r} for region {label}")
+    each, members = grouped(regions)
     return Sets(
         labels={name: label for label, name in called.items()},
-        regions={name: np.flatnonzero(regions == label) for label, name in called.items()},
+        regions={called[label]: rows for label, rows in zip(each.tolist(), members, strict=True)},
         sides={name: np.stack(np.divmod(sides, 3), axis=1) for name, sides in found.items()},
         edges={name: np.stack([start[sides], end[sides]], axis=1) for name, sides in found.items()},
-        tags={name: tags[name] for name in found},
+        tags=set_tags(found, file_numbers(list(called)).values()),
+        part_of=part_of,
+        between=between,
     )
+
+
+def _split(found: dict[str, Ints], whole: str, pieces: Ints) -> list[str]:
+    """Add the pieces of a set to what was found, if there are several; return their names."""
+    count = int(pieces.max(initial=0)) + 1
+    if count == 1:
+        return []
+    sides = found[whole]
+    parts = np.split(sides[np.argsort(pieces, kind="stable")], np.cumsum(np.bincount(pieces))[:-1])
+    names = [f"{whole}_{i}" for i in range(1, count + 1)]
+    found |= dict(zip(names, parts, strict=True))
+    return names
 
 
 def region_names(regions: Ints, names: Mapping[int, str] | None = None) -> dict[int, str]:
@@ -157,7 +188,39 @@ def region_names(regions: Ints, names: Mapping[int, str] | None = None) -> dict[
     return unique_names(np.unique(regions).tolist(), names or {})
 
 
-def boundary_rings(vertices: Floats, triangles: Ints, twins: Ints | None = None) -> tuple[Ints, Ints, Floats]:
+def pieces_by_name(names: Iterable[str]) -> dict[str, str]:
+    """Return which sets are pieces of others, as far as their names tell.
+
+    Examples
+    --------
+    >>> pieces_by_name(["left", "left_1", "left_2", "hole_1"])
+    {'left_1': 'left', 'left_2': 'left'}
+    """
+    names = set(names)
+    wholes = {name: name.rpartition("_") for name in sorted(names)}
+    return {name: whole for name, (whole, _, number) in wholes.items() if whole in (*FRAME, OUTER) and whole in names and number.isdigit()}
+
+
+def interfaces_by_name(names: Iterable[str], regions: Mapping[int, str]) -> dict[str, tuple[int, int]]:
+    """Return the labels of the regions on both sides of the sets that are interfaces, as far as their names tell.
+
+    Examples
+    --------
+    >>> interfaces_by_name(["left", "bone__region_7"], {3: "bone", 7: "region_7"})
+    {'bone__region_7': (3, 7)}
+    """
+    labels = {name: label for label, name in regions.items()}
+    found = {}
+    for name in names:
+        parts = name.split("__")
+        pairs = [("__".join(parts[:i]), "__".join(parts[i:])) for i in range(1, len(parts))]
+        known = [(labels[one], labels[other]) for one, other in pairs if one in labels and other in labels]
+        if len(known) == 1:
+            found[name] = known[0]
+    return found
+
+
+def boundary_rings(vertices: Floats, triangles: Ints) -> tuple[Ints, Ints, Floats]:
     """Follow the boundary of a mesh.
 
     Returns
@@ -174,22 +237,28 @@ def boundary_rings(vertices: Floats, triangles: Ints, twins: Ints | None = None)
     >>> boundary_rings(np.array([[0, 0], [2, 0], [0, 2.0]]), np.array([[0, 1, 2]]))
     (array([0, 1, 2]), array([0, 0, 0]), array([2.]))
     """
-    twins = side_twins(triangles, len(vertices)) if twins is None else twins
+    sides, _, ring, area = _boundary(vertices, triangles, side_twins(triangles, len(vertices)))
+    return sides, ring, area
+
+
+def _boundary(vertices: Floats, triangles: Ints, twins: Ints) -> tuple[Ints, Ints, Ints, Floats]:
+    """Return the sides without a twin, for each the row of the one that follows it, its ring, and what each ring encloses."""
     free = np.flatnonzero(twins < 0)
     following = next_side(free)
     turning = np.flatnonzero(twins[following] >= 0)
     while len(turning):
         following[turning] = next_side(twins[following[turning]])
         turning = turning[twins[following[turning]] >= 0]
+    following = np.searchsorted(free, following)
     # Each side looks one, two, four... sides ahead for the lowest number, until it has seen the whole ring.
-    step, lowest = np.searchsorted(free, following), np.arange(len(free))
+    step, lowest = following, np.arange(len(free))
     for _ in range(len(free).bit_length()):
         lowest = np.minimum(lowest, lowest[step])
         step = step[step]
     ring = np.unique(lowest, return_inverse=True)[1]
     a, b = (vertices[:, :2] - vertices[0, :2])[np.stack([triangles.ravel()[free], triangles.ravel()[next_side(free)]])]
     area = np.bincount(ring, (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2).astype(np.float64)
-    return free.astype(np.int64), ring.astype(np.int64), area
+    return free, following, ring, area
 
 
 def _on_frame(vertices: Floats, start: Ints, end: Ints, bounds: tuple[float, float, float, float] | None) -> list[Bools]:

@@ -1,7 +1,7 @@
 """MSH and BDF read back: the bytes of a file -> cells of one kind, with regions, names, and the facets of each set.
 
 What img2tri writes is read completely. Of the files of other programs, those in text are read whose cells of highest dimension are all
-triangles or all wedges, linear or quadratic.
+triangles, all wedges or all tetrahedra, linear or quadratic.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -17,42 +17,18 @@ from numpy.typing import NDArray
 
 from img2tri.arrays import Floats, Ints
 from img2tri.errors import MeshError
+from img2tri.views.formats.readers.found import Found, commented, labels_of
 from img2tri.views.formats.solvers import bdf, msh
 
 # Number of nodes of each of Gmsh's types of element.
 _NODES = (0, 2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27, 18, 14, 1, 8, 20, 15, 13)
 _GMSH = {number: kind for kind, number in msh.GMSH_TYPES.items()}
 _NASTRAN = {("CTRIA3", 3): "triangle", ("CTRIA6", 6): "triangle6", ("CPENTA", 6): "wedge", ("CPENTA", 15): "wedge15"}
+_NASTRAN |= {("CTETRA", 4): "tetra", ("CTETRA", 10): "tetra10"}
 
 
-@dataclass(frozen=True, eq=False)
-class Found:
-    """What a file holds.
-
-    Attributes
-    ----------
-    points
-        (p, 3) float64.
-    cells, kind
-        As in `img2tri.views.objects.solver_cells.Cells`.
-    regions
-        (m,) int64, the number of each cell's physical group or property, or the label in its name; 0 without one.
-    names
-        Label -> name of the region; those without a name are missing.
-    facets
-        Name of each set -> the nodes of its facets, (k, 2 to 8) int64, or, where a format knows sets of nodes only, its nodes (k, 1).
-    """
-
-    points: Floats
-    cells: Ints
-    kind: str
-    regions: Ints
-    names: dict[int, str]
-    facets: dict[str, Ints]
-
-
-# Dimension, physical group, Gmsh's type, and rows that hold the number of an element and those of its nodes.
-_Blocks = list[tuple[int, int, int, Ints]]
+# Dimension, physical groups, Gmsh's type, and rows that hold the number of an element and those of its nodes.
+_Blocks = list[tuple[int, tuple[int, ...], int, Ints]]
 
 
 def parse_msh(data: bytes) -> Found:
@@ -65,7 +41,8 @@ def parse_msh(data: bytes) -> Found:
     ValueError, KeyError, IndexError
         If the file is damaged, in binary, or no MSH.
     """
-    sections = dict(re.findall(r"^\$(\w+)\s*\n(.*?)^\$End\1\s*$", data.decode(), re.DOTALL | re.MULTILINE))
+    text = data.decode()
+    sections = dict(re.findall(r"^\$(\w+)\s*\n(.*?)^\$End\1\s*$", text, re.DOTALL | re.MULTILINE))
     version, binary, _ = sections["MeshFormat"].split()
     if version not in msh.VERSIONS or binary != "0":
         raise ValueError(f"expected MSH 2.2 or 4.1 in text, found {version} in {'text' if binary == '0' else 'binary'}")
@@ -77,15 +54,45 @@ def parse_msh(data: bytes) -> Found:
         for dimension, group, name in re.findall(r'^\s*(\d+)\s+(\d+)\s+"(.*)"\s*$', sections.get("PhysicalNames", ""), re.MULTILINE)
     }
     top = max((dimension for dimension, *_ in blocks), default=0)
-    inside = [(_GMSH.get(number, ""), group, rows) for dimension, group, number, rows in blocks if dimension == top]
+    inside = [(_GMSH.get(number, ""), groups[0], rows) for dimension, groups, number, rows in blocks if dimension == top]
     kind, table = _one_kind([(kind, np.insert(rows, 1, group, axis=1)) for kind, group, rows in inside])
     facets = defaultdict(list)
-    for dimension, group, _, rows in blocks:
-        if dimension == top - 1 and (dimension, group) in names:
-            facets[names[dimension, group]].append(place[rows[:, 1:]])
+    for dimension, groups, _, rows in blocks:
+        for group in groups:
+            if dimension == top - 1 and (dimension, group) in names:
+                facets[names[dimension, group]].append(place[rows[:, 1:]])
     alike = {name: np.concatenate(parts) for name, parts in facets.items() if len({part.shape[1] for part in parts}) == 1}
     called = {group: name for (dimension, group), name in names.items() if dimension == top}
-    return _assembled(points, table, place, kind, msh.GMSH_ORDERS, called, alike)
+    texts = commented(sections.get("Comments", ""), "")
+    found = _assembled(points, table, place, kind, msh.GMSH_ORDERS, called, alike, texts)
+    cells = {name: values[:, 1:] for name, values in _data(sections_of(text, "ElementData"), np.sort(table[:, 0])).items()}
+    nodes = {name: values[:, 1:] for name, values in _data(sections_of(text, "NodeData"), numbers).items()}
+    return replace(found, cell_data=_columns(cells), point_data=_columns(nodes))
+
+
+def sections_of(text: str, name: str) -> list[str]:
+    """Return what is in all sections of a name; there may be several of data."""
+    return re.findall(rf"^\${name}\s*\n(.*?)^\$End{name}\s*$", text, re.DOTALL | re.MULTILINE)
+
+
+def _data(sections: list[str], numbers: Ints) -> dict[str, Floats]:
+    """Return the rows of each array, in the order of `numbers`, if it has one for each of them."""
+    found = {}
+    for section in sections:
+        lines = section.splitlines()
+        texts = int(lines[0])
+        name, at = lines[1].strip().strip('"'), 1 + texts
+        at += 1 + int(lines[at])
+        whole = [int(line) for line in lines[at + 1 : at + 1 + int(lines[at])]]
+        rows = np.array(" ".join(lines[at + 1 + len(whole) :]).split(), np.float64).reshape(whole[2], 1 + whole[1])
+        rows = rows[np.argsort(rows[:, 0], kind="stable")]
+        if np.array_equal(rows[:, 0], numbers):
+            found[name] = rows
+    return found
+
+
+def _columns(arrays: dict[str, Floats]) -> dict[str, NDArray[Any]]:
+    return {name: values[:, 0] if values.shape[1] == 1 else values for name, values in arrays.items()}
 
 
 def parse_bdf(data: bytes) -> Found:
@@ -117,7 +124,8 @@ def parse_bdf(data: bytes) -> Found:
     called = {int(number): name for number, name in re.findall(r'^\$HMNAME COMP\s+(\d+)\s*"(.*?)"', text, re.MULTILINE)}
     known = {int(number): name for number, name in re.findall(r'^\$HMSET\s+(\d+)\s+1\s*"(.*?)"', text, re.MULTILINE)}
     nodes = {known[number]: place[members][:, None] for number, members in sets.items() if number in known}
-    return _assembled(np.array([places[number] for number in numbers.tolist()]), table, place, kind, bdf.NASTRAN_ORDERS, called, nodes)
+    points = np.array([places[number] for number in numbers.tolist()])
+    return _assembled(points, table, place, kind, bdf.NASTRAN_ORDERS, called, nodes, commented(text, "$ "))
 
 
 def by_text(data: bytes, suffix: str) -> tuple[Floats, Ints, Ints]:
@@ -137,26 +145,23 @@ def by_text(data: bytes, suffix: str) -> tuple[Floats, Ints, Ints]:
 
 
 def _assembled(
-    points: Floats, table: Ints, place: Ints, kind: str, orders: dict[str, list[int]], names: dict[int, str], facets: dict[str, Ints]
-) -> Found:
+    points: Floats, table: Ints, place: Ints, kind: str, orders: dict[str, list[int]], names: dict[int, str], facets: dict[str, Ints],
+    texts: dict[str, str],
+) -> Found:  # fmt: skip
     """Put together what was read; `table` has for each cell its number, that of its region, and those of its nodes, in `orders`."""
     table = table[np.argsort(table[:, 0], kind="stable")]
     cells = place[table[:, 2:]][:, np.argsort(orders[kind]) if kind in orders else slice(None)]
     if any(rows.min(initial=0) < 0 for rows in (cells, *facets.values())):
         raise ValueError("it has cells with nodes that are not there")
-    numbers, which = np.unique(table[:, 1], return_inverse=True)
-    # A region that has no name of its own is called by its label, which may be below 1 though its number is not.
-    own = {number: re.fullmatch(r"region_(-?\d+)", name) for number, name in names.items()}
-    labels = {number: int(match[1]) if (match := own.get(number)) else number for number in numbers.tolist()}
-    called = {labels[number]: name for number, name in names.items() if number in labels}
-    return Found(points, cells, kind, np.array([labels[number] for number in numbers.tolist()])[which], called, facets)
+    labels, called = labels_of(table[:, 1], names, texts)
+    return Found(points, cells, kind, labels, called, facets, texts=texts)
 
 
 def _one_kind(parts: list[tuple[str, NDArray[Any]]]) -> tuple[str, NDArray[Any]]:
     """Return the kind of all cells, and the cells."""
     kinds = {kind for kind, _ in parts}
     if len(kinds) != 1 or "" in kinds:
-        raise MeshError("expected cells that are all triangles or all wedges, found " + ("others" if kinds else "none"))
+        raise MeshError("expected cells that are all triangles, all wedges or all tetrahedra, found " + ("others" if kinds else "none"))
     return kinds.pop(), np.concatenate([rows for _, rows in parts])
 
 
@@ -172,7 +177,7 @@ def _read_version_4(sections: dict[str, str]) -> tuple[Ints, Floats, _Blocks]:
             groups = [int(next(words)) for _ in range(int(next(words)))]
             for _ in range(int(next(words)) if dimension else 0):
                 next(words)
-            group[dimension, number] = groups[0] if groups else 0
+            group[dimension, number] = tuple(groups) or (0,)
     values = np.array(sections["Nodes"].split(), np.float64)
     count, at, numbers, points = int(values[0]), 4, [np.zeros(0, np.int64)], [np.zeros((0, 3))]
     for _ in range(count):
@@ -186,7 +191,7 @@ def _read_version_4(sections: dict[str, str]) -> tuple[Ints, Floats, _Blocks]:
     for _ in range(count):
         dimension, entity, kind, n = whole[at : at + 4].tolist()
         rows = whole[at + 4 : at + 4 + n * (1 + _NODES[kind])].reshape(n, 1 + _NODES[kind])
-        blocks.append((dimension, group.get((dimension, entity), 0), kind, rows))
+        blocks.append((dimension, group.get((dimension, entity), (0,)), kind, rows))
         at += 4 + rows.size
     order = np.argsort(all_numbers := np.concatenate(numbers), kind="stable")
     return all_numbers[order], np.concatenate(points)[order], blocks
@@ -199,7 +204,7 @@ def _read_version_2(sections: dict[str, str]) -> tuple[Ints, Floats, _Blocks]:
     for line in sections["Elements"].splitlines()[1:]:
         numbers = [int(word) for word in line.split()]
         rows[numbers[1], numbers[3] if numbers[2] else 0].append([numbers[0], *numbers[3 + numbers[2] :]])
-    blocks = [(_DIMENSIONS[kind], group, kind, np.array(elements)) for (kind, group), elements in rows.items()]
+    blocks: _Blocks = [(_DIMENSIONS[kind], (group,), kind, np.array(elements)) for (kind, group), elements in rows.items()]
     return nodes[:, 0].astype(np.int64), nodes[:, 1:], blocks
 
 

@@ -1,7 +1,7 @@
 """INP read back: the bytes of a file of Abaqus or CalculiX -> cells of one kind, with regions, names, and the facets of each set.
 
-What img2tri writes is read completely. Of the files of other programs those are read whose elements are all triangles or all wedges, with
-no parts or instances; each ELSET of ``*ELEMENT`` is a region.
+What img2tri writes is read completely. Of the files of other programs those are read whose elements are all triangles, all wedges or all
+tetrahedra, with no parts or instances; each ELSET of ``*ELEMENT`` is a region.
 """
 
 from __future__ import annotations
@@ -14,13 +14,15 @@ import numpy as np
 
 from img2tri.arrays import Ints
 from img2tri.errors import MeshError
-from img2tri.views.formats.solvers.read_msh_bdf import Found
+from img2tri.views.formats.readers.found import Found, commented
 from img2tri.views.objects.solver_cells import CELL_SIDES, FLAT_KINDS, SOLID_KINDS
 
 # Families of elements of Abaqus; behind their letters stands the number of nodes, then at most letters for variants.
 _FLAT_ELEMENTS = re.compile(r"(?:CPS|CPE|CPEG|CAX|M3D|DC2D|DCAX|STRI|SFM3D|R3D|S)([36])[A-Z]*")
-_SOLID_ELEMENTS_READ = re.compile(r"(?:C3D|DC3D|AC3D)(6|15)[A-Z]*")
-_ABAQUS_SIDES = {True: (3, 4, 0, 1, 2), False: (0, 1, 2)}  # of wedges and triangles: ours, in the order of Abaqus
+_SOLID_ELEMENTS_READ = re.compile(r"(?:C3D|DC3D|AC3D)(6|15|4|10)[A-Z]*")
+_SOLID_KINDS_READ = {**SOLID_KINDS, 4: "tetra", 10: "tetra10"}
+# Our number of each side, in the order of Abaqus.
+_ABAQUS_SIDES = {"triangle": (0, 1, 2), "wedge": (3, 4, 0, 1, 2), "tetra": (0, 1, 2, 3)}
 
 
 def is_abaqus(data: bytes) -> bool:
@@ -53,7 +55,7 @@ def parse_inp(data: bytes) -> Found:
     ([[0, 1, 2]], 'triangle', {1: 'wing'})
     """
     text = data.decode().replace("\r\n", "\n")
-    said = dict(re.findall(r"^\*\* (\w+): (.*)$", text.replace("\n**    ", ""), re.MULTILINE))
+    said = commented(text, "** ")
     called = {plain: _unescaped(line.removeprefix("named ")) for plain, line in said.items() if line.startswith("named ")}
     blocks = list(_keyword_blocks(text))
     rows = [[*map(float, line.strip(" ,").split(",")), 0.0][:4] for key, _, lines in blocks if key == "NODE" for line in lines]
@@ -77,7 +79,10 @@ def parse_inp(data: bytes) -> Found:
         if key == "SURFACE" and options.get("TYPE", "ELEMENT").upper() == "ELEMENT":
             facets |= _facets(options["NAME"], lines, elements[:, 0], cells, kind)
     names = {label: called.get(name, name) for name, label in labels.items() if name}
-    return Found(nodes[:, 1:], cells, kind, regions, names, {called.get(name, name): part for name, part in facets.items()})
+    facets = {called.get(name, name): part for name, part in facets.items() if not name.startswith("PERIODIC_")}
+    texts = {name: text for name, text in said.items() if not text.startswith("named ")}
+    # Nodes that stand for the stretch of a periodic mesh, after all others, are no part of the mesh.
+    return Found(nodes[: 1 + int(cells.max()), 1:], cells, kind, regions, names, facets, texts=texts)
 
 
 def _keyword_blocks(text: str) -> Iterator[tuple[str, dict[str, str], list[str]]]:
@@ -107,9 +112,11 @@ def _kind(types: set[str]) -> tuple[str, int]:
     kinds = set()
     for name in types:
         flat, solid = _FLAT_ELEMENTS.fullmatch(name), _SOLID_ELEMENTS_READ.fullmatch(name)
-        kinds.add((FLAT_KINDS[int(flat[1])], int(flat[1])) if flat else (SOLID_KINDS[int(solid[1])], int(solid[1])) if solid else ("", 0))
+        kinds.add(
+            (FLAT_KINDS[int(flat[1])], int(flat[1])) if flat else (_SOLID_KINDS_READ[int(solid[1])], int(solid[1])) if solid else ("", 0)
+        )
     if len(kinds) != 1 or ("", 0) in kinds:
-        raise MeshError("expected cells that are all triangles or all wedges, found " + ("others" if kinds else "none"))
+        raise MeshError("expected cells that are all triangles, all wedges or all tetrahedra, found " + ("others" if kinds else "none"))
     return kinds.pop()
 
 
@@ -133,7 +140,8 @@ def _rows_of(numbers: Ints, wanted: Ints) -> Ints:
 def _facets(name: str, lines: list[str], numbers: Ints, cells: Ints, kind: str) -> dict[str, Ints]:
     """Return the nodes of the sides of elements that make a surface, if all are given one by one, and alike."""
     rows = [re.fullmatch(r"\s*(\d+)\s*,\s*S(\d)\s*,?\s*", line, re.IGNORECASE) for line in lines]
-    sides = [(int(row[1]), CELL_SIDES[kind][_ABAQUS_SIDES[kind in SOLID_KINDS.values()][int(row[2]) - 1]]) for row in rows if row]
+    order = next(sides for first, sides in _ABAQUS_SIDES.items() if kind.startswith(first))
+    sides = [(int(row[1]), CELL_SIDES[kind][order[int(row[2]) - 1]]) for row in rows if row]
     if len(sides) < len(rows) or len({len(nodes) for _, nodes in sides}) != 1:
         return {}
     cell = _rows_of(numbers, np.array([number for number, _ in sides]))

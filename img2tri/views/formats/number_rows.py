@@ -1,0 +1,106 @@
+"""Arrays of numbers as text, one row in a line, for the formats that are text: as fast as Python and numpy go.
+
+Whole numbers are taken apart four digits at a time by numpy, so their cost is that of a few passes over their bytes. Other numbers are
+written by Python, with the fewest digits that give the same float64 again; one template for thousands of rows makes the calls few.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+_ROWS = 4096  # filled into one template at once
+_DIGITS = 4  # taken at once from a table of all groups of so many
+
+
+def whole_rows(array: NDArray[np.integer[Any]], between: str = " ", *, before: str = "", after: str = "") -> str:
+    r"""Write whole numbers of at least 0, a row (k, c) in a line.
+
+    Parameters
+    ----------
+    between
+        What stands between the numbers.
+    before, after
+        What each line begins and ends with.
+
+    Examples
+    --------
+    >>> whole_rows(np.array([[1, 20345], [300, 4]]), before="f "), whole_rows(np.array([[7]]), ",", after=", S1")
+    ('f 1 20345\nf 300 4\n', '7, S1\n')
+    """
+    if not array.size:
+        return ""
+    largest = int(array.max())
+    if array.min() < 0 or largest >= 2**32:
+        return "".join(f"{before}{between.join(map(str, row))}{after}\n" for row in array.tolist())
+    width = len(str(largest))
+    groups = -(-width // _DIGITS)
+    head, tail = before.encode(), after.encode() + b"\n"
+    k, columns = array.shape
+    comma = between.encode()
+    size = groups * _DIGITS + len(comma)
+    line = np.zeros((k, len(head) + columns * size - len(comma) + len(tail)), np.uint8)
+    shown = np.ones(line.shape, bool)
+    line[:, : len(head)], line[:, line.shape[1] - len(tail) :] = list(head), list(tail)
+    for column in range(columns):
+        rest, at = array[:, column].astype(np.uint32), len(head) + column * size
+        digits = np.empty((k, groups), np.uint32)
+        for group in range(groups - 1, -1, -1):
+            upper = rest // np.uint32(10**_DIGITS)
+            digits[:, group] = _table()[rest - upper * np.uint32(10**_DIGITS)]
+            rest = upper
+        line[:, at : at + groups * _DIGITS] = digits.view(np.uint8)
+        # Zeros in front are not shown.
+        for power in range(groups * _DIGITS - 1):
+            shown[:, at + power] = array[:, column] >= 10 ** (groups * _DIGITS - 1 - power)
+        if column < columns - 1:
+            line[:, at + groups * _DIGITS : at + size] = list(comma)
+    return line[shown].tobytes().decode()
+
+
+def real_rows(array: NDArray[np.floating[Any]], between: str = " ", *, before: str = "", after: str = "") -> str:
+    r"""Write float64 numbers with all their digits, a row (k, c) in a line; options as of `whole_rows`.
+
+    Examples
+    --------
+    >>> real_rows(np.array([[0.1, 1 / 3], [2, -0.0]]))
+    '0.1 0.3333333333333333\n2.0 -0.0\n'
+    """
+    columns = array.shape[1]
+    words = [repr(float(values[0])) if len(values) and _constant(values) else "%r" for values in array.T]
+    template = before.replace("%", "%%") + between.join(words) + after.replace("%", "%%") + "\n"
+    free = [i for i in range(columns) if words[i] == "%r"]
+    values = array[:, free].ravel().tolist()
+    each, parts = _ROWS * len(free), []
+    if not free:
+        return template * len(array)
+    large = template * _ROWS
+    for i in range(0, len(values), each):
+        some = values[i : i + each]
+        parts.append((large if len(some) == each else template * (len(some) // len(free))) % tuple(some))
+    return "".join(parts)
+
+
+def rows(template: str, array: NDArray[Any]) -> list[str]:
+    """Fill `template` with each row of `array`; ``{!r}`` writes the fewest digits that give the same float64 again.
+
+    Examples
+    --------
+    >>> rows("v {!r} {!r}", np.array([[0.1, 1 / 3]]))
+    ['v 0.1 0.3333333333333333']
+    """
+    return list(map(template.format, *array.T.tolist()))
+
+
+def _constant(values: NDArray[Any]) -> bool:
+    return bool(np.all(values == values[0]) and np.all(np.signbit(values) == np.signbit(values[0])))
+
+
+@cache
+def _table() -> NDArray[np.uint32]:
+    """Return for each number below 10,000 its four digits, as the bytes of one uint32."""
+    number = np.arange(10**_DIGITS)[:, None] // 10 ** np.arange(_DIGITS - 1, -1, -1) % 10
+    return np.ascontiguousarray((number + ord("0")).astype(np.uint8)).view(np.uint32).ravel()

@@ -1,0 +1,12 @@
+"""Files read back: the bytes of a file -> `img2tri.views.formats.readers.found.Found`, with regions, names and sets.
+
+read_any                  any file by its suffix, with all it holds
+found                     what a file holds: the record all readers return, and the labels in names and tables
+read_stl_ply_obj_off_glb  the formats trimesh knows
+read_vtp_vtu              VTP and VTU
+read_vtkhdf               VTKHDF
+read_msh_bdf              MSH of Gmsh, BDF of Nastran
+read_inp                  INP of Abaqus and CalculiX
+read_xdmf                 XDMF
+read_medit                MESH of Medit and FreeFem
+"""
