@@ -100,7 +100,7 @@ def mesh_image(image: Any, *, progress: Callable[[str, float], None] | None = No
 
     kept = plain(o, field=None if sizes.field is None else sizes.field.grid)
     mesh = TriangleMesh(
-        frame.world(made.vertices), made.triangles, outlines.labels[made.regions], frame, o["names"] or {},
+        frame.world(made.vertices), made.triangles, outlines.labels[made.regions], frame, _names(o, picture, outlines),
         Provenance(
             o["recipe"], kept, kept | _chosen(o, picture, zones, sizes, within), outlines, *pixels_beside(dual_edges),
             areas=pixel_areas(dual_edges) if zones.gray is None else enclosed_areas(outlines),  # gray values may place the outlines
@@ -175,6 +175,13 @@ def _check_found(outlines: Outlines, zones: Segmentation, o: MeshOptions, remove
     for named in o["names"] or {}:
         if named not in outlines.labels[1:]:
             raise ParameterError(f"names: expected labels of the image, found {named}; it has {outlines.labels[1:21].tolist()}")
+
+
+def _names(o: MeshOptions, picture: Picture, outlines: Outlines) -> dict[int, str]:
+    """Return the names of regions as given, or as the file has them for labels that are there."""
+    if o["names"] is not None or not o["labels"]:
+        return o["names"] or {}
+    return {label: name for label, name in picture.notes.get("names", {}).items() if label in outlines.labels[1:]}
 
 
 def _advice(level: Level | None, removed: int) -> str:

@@ -46,7 +46,7 @@ FOLDERS = {*ROOMS, "paper", "recipes", "certificate", "options", "app", "cli"}  
 # numpy is at home everywhere.
 LIBRARIES = {
     "arrays": {"scipy"},  # sorts by counting
-    "raster": {"cv2", "PIL", "tifffile", "pydicom", "nibabel", "scipy"},  # scipy joins runs of pixels to components
+    "raster": {"cv2", "PIL", "tifffile", "pydicom", "nibabel", "scipy", "h5py", "zarr"},  # scipy joins runs of pixels to components
     "shapes": {"shapely", "scipy", "cv2"},  # cv2 measures distances to the places where lengths are given
     "triangles": {"scipy", "igl", "pythoncdt", "shapely"},
     "views": {"skfem", "trimesh", "pyvista", "vtkmodules", "matplotlib", "PIL"},  # PIL writes the pictures of pages

@@ -23,7 +23,7 @@ class ReadOptions(TypedDict, total=False):
         Option(
             None,
             'Size of a pixel in world units: a number, a pair (dx, dy), or "file", what the file says, in its unit.',
-            none="1, or what a DICOM or NIfTI file says",
+            none="1, or what a DICOM, NIfTI, NRRD or MetaImage file says",
             typed=typed.pair_or_word,
             sign="S",
         ),
@@ -40,7 +40,13 @@ class ReadOptions(TypedDict, total=False):
     ]
     page: Annotated[
         int,
-        Option(0, "Which image of a file with several, from 0.", check=o.whole(), typed=typed.whole_number, sign="N"),
+        Option(
+            0,
+            "Which image of a file with several, from 0: a page, a frame, a slice of a volume.",
+            check=o.whole(),
+            typed=typed.whole_number,
+            sign="N",
+        ),
     ]
     max_pixels: Annotated[
         int,
@@ -181,7 +187,7 @@ class NameOptions(TypedDict, total=False):
         Option(
             None,
             "Names of regions by label, as in 1=bone.",
-            none="regions have their labels",
+            none="those of a segmentation of 3D Slicer, else regions have their labels",
             check=o.names_by_label,
             typed=typed.label_and_value,
             sign="N=NAME",

@@ -28,7 +28,7 @@ from img2tri.types import Frame, Picture
 Pair = tuple[float, float]
 
 FINEST = 1e-4  # px: how exact places in the world must be
-CARRY_SPACING = ("DICOM", "NIfTI")  # formats made to say how large a pixel is
+CARRY_SPACING = ("DICOM", "NIfTI", "NRRD", "MetaImage")  # formats made to say how large a pixel is
 
 
 def read(
@@ -52,14 +52,15 @@ def read(
     spacing
         The size of a pixel in world units: a number, a pair (dx, dy), or "file", which takes the size or resolution noted in a
         TIFF, PNG, JPEG, DICOM or NIfTI file: in millimetres, in the unit of an ImageJ or OME-TIFF, or in that of the coordinate
-        system of a GeoTIFF, which then lies at its place unless `origin` is given. None is "file" for DICOM and NIfTI, if they note a
-        size; 1 for all else, whatever the file says, since many carry a resolution of 72 dpi nobody chose. Objects that know their
-        place always keep it.
+        system of a GeoTIFF, which then lies at its place unless `origin` is given. None is "file" for DICOM, NIfTI, NRRD and
+        MetaImage, if they note a size; 1 for all else, whatever the file says, since many carry a resolution of 72 dpi nobody chose.
+        Objects that know their place always keep it.
     origin
         "lower": x points right and y up, the lower-left corner of the image is at (0, 0). "upper": y points down, as in image
         coordinates, the corner of the first pixel is at (0, 0). A pair (x, y): as "lower", with the corner there.
     page
-        Which image of a file with several, from 0: a page, a frame, a slice across the third axis of a NIfTI file.
+        Which image of a file with several, from 0: a page, a frame, a slice across the third axis of a NIfTI, NRRD or MetaImage file,
+        across the first axes of an array in a .npy, HDF5 or zarr file.
     max_pixels
         A file that claims more pixels than this is refused before it is decoded, so that a small file cannot fill the memory; so
         is an open file that gives more than 8 bytes for each, and 1 MiB.

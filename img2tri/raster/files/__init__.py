@@ -8,4 +8,8 @@ windows_icons     the size of the images in an icon, checked before Pillow decod
 tiff              TIFFs of types Pillow has no mode for
 dicom             DICOM: frames, rescaling to measured values
 nifti             NIfTI: slices of a volume
+npy_npz           NumPy's own files
+nrrd_metaimage    NRRD (3D Slicer) and MetaImage (ITK, ITK-SNAP), with the names of segments
+hdf5_zarr         HDF5 and zarr: ``file.h5:/path``
+volumes           of volumes and stacks one plane: which axes are the image, and only as many bytes as that needs
 """

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import io
 import os
+import re
 import stat
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,6 +20,7 @@ from img2tri.errors import FileError, ImageError, Img2triError, ParameterError, 
 BYTES_PER_PIXEL = 8  # four colours of 16 bit, or one float64, not compressed
 HEADROOM = 2**20  # bytes for what is no pixel
 PART = 2**20
+HOLD_SEVERAL = ("h5", "hdf5", "hdf", "nc", "ilp", "zarr", "npz")  # suffixes of formats that hold several arrays
 GZIP = b"\x1f\x8b"  # what a compressed file begins with
 
 
@@ -44,11 +46,14 @@ class Source:
         The file; None where `data` are the bytes.
     data
         The bytes, where there is no path.
+    inner
+        The name of an array in the file, for formats that hold several; empty: none is named.
     """
 
     name: str
     path: Path | None = None
     data: bytes = b""
+    inner: str = ""
 
     def __str__(self) -> str:
         return self.name
@@ -93,13 +98,26 @@ def is_file(image: object) -> bool:
     return isinstance(image, (str, os.PathLike, Source)) or callable(getattr(image, "read", None))
 
 
+def _parted(name: str) -> tuple[str, str]:
+    """Part the name of a file and of an array in it: ``scan.h5:/raw/labels``.
+
+    Examples
+    --------
+    >>> _parted("scan.h5:/raw/labels"), _parted("C:/a.png")
+    (('scan.h5', '/raw/labels'), ('C:/a.png', ''))
+    """
+    match = re.fullmatch(rf"(.*\.(?:{'|'.join(HOLD_SEVERAL)}))/?:(/.*)", name, re.DOTALL | re.IGNORECASE)
+    return (match[1], match[2]) if match else (name, "")
+
+
 def source_of(image: Any, *, max_pixels: int = 2**28) -> Source:
     r"""Return where the bytes of a file are; those of an open file are read from where it stands to its end.
 
     Parameters
     ----------
     image
-        A path, a file opened in binary mode, or a source, which is returned as it is.
+        A path, which may name an array in the file, as ``scan.h5:/labels`` does; a file opened in binary mode; or a source, which is
+        returned as it is.
     max_pixels
         An open file may give 8 bytes for each, and 1 MiB; memory is taken for no more than it gives.
 
@@ -115,12 +133,13 @@ def source_of(image: Any, *, max_pixels: int = 2**28) -> Source:
     Examples
     --------
     >>> source_of(io.BytesIO(b"P5 1 1 255 \0"))
-    Source(name='<file>', path=None, data=b'P5 1 1 255 \x00')
+    Source(name='<file>', path=None, data=b'P5 1 1 255 \x00', inner='')
     """
     if isinstance(image, Source):
         return image
     if isinstance(image, (str, os.PathLike)):
-        return Source(str(Path(image)), Path(image))
+        file, inner = _parted(os.fspath(image))
+        return Source(str(Path(file)), Path(file), inner=inner)
     noted = getattr(image, "name", None)
     name = noted if isinstance(noted, str) else "<file>"
     most = BYTES_PER_PIXEL * integer("max_pixels", max_pixels, least=1) + HEADROOM

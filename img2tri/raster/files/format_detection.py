@@ -1,13 +1,14 @@
 """A file -> the values in it, what was noted while reading, and the size of a pixel in millimetres if the file says it.
 
 The format is told by the first bytes, or else by the suffix. Pillow decodes all common formats: it keeps palette indices and bit depth,
-reports truncated files and knows EXIF. TIFFs of types it has no mode for, DICOM and NIfTI have decoders of their own.
+reports truncated files and knows EXIF. Others have decoders of their own.
 """
 
 from __future__ import annotations
 
 import zlib
 from contextlib import suppress
+from pathlib import Path
 
 from PIL import Image, UnidentifiedImageError
 
@@ -15,12 +16,22 @@ from img2tri.errors import FileError, ImageError, Img2triError
 from img2tri.raster.files.byte_sources import GZIP, Source
 from img2tri.raster.files.decoded import Decoded
 from img2tri.raster.files.dicom import decode_dicom
+from img2tri.raster.files.hdf5_zarr import HDF5_START, decode_hdf5, decode_zarr
 from img2tri.raster.files.nifti import decode_nifti
+from img2tri.raster.files.npy_npz import NPY_START, ZIP_START, decode_npy, decode_npz
+from img2tri.raster.files.nrrd_metaimage import METAIMAGE_STARTS, NRRD_START, decode_metaimage, decode_nrrd
 from img2tri.raster.files.pillow_images import decode_with_pillow, pillow_reads_tiff
 from img2tri.raster.files.tiff import decode_tiff
 
-TIFF_STARTS = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
-MEDICAL = {".dcm": "DICOM", ".dicom": "DICOM", ".nii": "NIfTI", ".nii.gz": "NIfTI"}
+STARTS = {
+    "TIFF": (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"), "NPY": (NPY_START,), "NPZ": (ZIP_START,), "NRRD": (NRRD_START,),
+    "MetaImage": METAIMAGE_STARTS, "HDF5": (HDF5_START,),
+}  # fmt: skip
+SUFFIXES = {".dcm": "DICOM", ".dicom": "DICOM", ".nii": "NIfTI", ".nii.gz": "NIfTI"}
+DECODERS = {
+    "DICOM": decode_dicom, "NIfTI": decode_nifti, "NPY": decode_npy, "NPZ": decode_npz, "NRRD": decode_nrrd, "MetaImage": decode_metaimage,
+    "HDF5": decode_hdf5,
+}  # fmt: skip
 NIFTI_START = 348
 FIRST_BYTES = 1024  # that tell all formats apart, also a NIfTI file that is compressed
 
@@ -51,12 +62,14 @@ def decode(source: Source, page: int, max_pixels: int) -> Decoded:
     ParameterError
         If it has no such page.
     """
+    if source.path is not None and _is_zarr(source.path):
+        return decode_zarr(source, page, max_pixels)
     start = source.start(FIRST_BYTES)
     try:
-        kind = _medical(source, start)
-        if kind:
-            return (decode_dicom if kind == "DICOM" else decode_nifti)(source, page, max_pixels)
-        if start[:4] in TIFF_STARTS and not pillow_reads_tiff(source, page):
+        kind = _known_start(source, start)
+        if kind in DECODERS:
+            return DECODERS[kind](source, page, max_pixels)
+        if kind == "TIFF" and not pillow_reads_tiff(source, page):
             return decode_tiff(source, page, max_pixels)
         return decode_with_pillow(source, start, page, max_pixels)
     except Img2triError:
@@ -74,8 +87,13 @@ def decode(source: Source, page: int, max_pixels: int) -> Decoded:
         raise FileError(f"image: {str(source)!r} is damaged or truncated ({error})") from error
 
 
-def _medical(source: Source, start: bytes) -> str | None:
-    """Tell a DICOM and a NIfTI file by its content, or by its suffix where that says nothing."""
+def _known_start(source: Source, start: bytes) -> str | None:
+    """Tell a format that is not for Pillow by its content, or by its suffix where that says nothing."""
+    for kind, begins in STARTS.items():
+        if start.startswith(begins):
+            return kind
+    if start[:3] == b"CDF":
+        raise FileError(f"image: {str(source)!r} is netCDF 3; open it with xarray, and give the DataArray")
     if start[128:132] == b"DICM":
         return "DICOM"
     if start[:2] == GZIP:
@@ -83,4 +101,12 @@ def _medical(source: Source, start: bytes) -> str | None:
             start = zlib.decompressobj(wbits=zlib.MAX_WBITS | 16).decompress(start, NIFTI_START)
     if start[344:348] == b"n+1\0" or start[4:8] == b"n+2\0":
         return "NIfTI"
-    return next((kind for suffix, kind in MEDICAL.items() if str(source).lower().endswith(suffix)), None)
+    return next((kind for suffix, kind in SUFFIXES.items() if str(source).lower().endswith(suffix)), None)
+
+
+def _is_zarr(path: Path) -> bool:
+    """Tell whether a folder is a zarr store, or an array in one."""
+    try:
+        return path.is_dir() and any((path / name).is_file() for name in ("zarr.json", ".zgroup", ".zarray"))
+    except (OSError, ValueError):
+        return False

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 from PIL import Image
+from PIL.TiffImagePlugin import COMPRESSION_INFO
 
 from img2tri.errors import FileError, ImageError
 from img2tri.raster.files.byte_sources import Source
@@ -25,7 +26,7 @@ from img2tri.raster.in_memory.array_checks import Pixels
 from img2tri.raster.metadata.exif_orientation import exif, orientation, upright
 from img2tri.raster.metadata.pixel_size import pixel_size
 
-BITS, PHOTOMETRIC, SAMPLE_FORMAT = 258, 262, 339  # tags of TIFF
+BITS, COMPRESSION, PHOTOMETRIC, SAMPLE_FORMAT = 258, 259, 262, 339  # tags of TIFF
 DRAWINGS = ("EPS", "WMF")
 
 # Modes of Pillow whose arrays are the values in the file; the others become one of these.
@@ -47,6 +48,8 @@ def pillow_reads_tiff(source: Source, page: int) -> bool:
                 img.seek(page)
             bits, kinds = set(img.tag_v2.get(BITS, (1,))), set(img.tag_v2.get(SAMPLE_FORMAT, (1,)))  # type: ignore[attr-defined]
             wide = ("I;16", "I;16B", "I", "F") if img.tag_v2.prefix == b"II" else ("I;16", "I;16B")  # type: ignore[attr-defined]
+            if img.tag_v2.get(COMPRESSION, 1) not in COMPRESSION_INFO:  # type: ignore[attr-defined]
+                return False
             return (max(bits) <= 8 and kinds == {1}) or (max(bits) <= 32 and img.mode in wide)
     except (OSError, SyntaxError, ValueError, KeyError, struct.error):
         return False

@@ -34,7 +34,7 @@ def decode_tiff(source: Source, page: int, max_pixels: int) -> Decoded:
         notes = {"format": "TIFF"} | check_page(source, page, pages, sheet.imagewidth, high, max_pixels)
         if sheet.samplesperpixel > MOST_SAMPLES:
             raise ImageError(f"image: expected at most {MOST_SAMPLES} values per pixel, found {sheet.samplesperpixel} in {str(source)!r}")
-        values = np.asarray(sheet.asarray())
+        values = _values_of(sheet, source)
         tags = {tag.code: tag.value for tag in sheet.tags}
         colormap, multiplied = sheet.colormap, tuple(sheet.extrasamples) == (ASSOCIATED,)
         if sheet.axes == "SYX":
@@ -49,6 +49,18 @@ def decode_tiff(source: Source, page: int, max_pixels: int) -> Decoded:
         notes["min_is_white"] = True
     turn = orientation(tags)
     return turned(of_tiff(upright(values, turn), notes, tags, turn), turn)
+
+
+def _values_of(sheet: Any, source: Source) -> Pixels:
+    try:
+        return np.asarray(sheet.asarray())
+    except ValueError as error:
+        if "imagecodecs" not in str(error):
+            raise
+        how = f"{getattr(sheet.compression, 'name', sheet.compression)}"
+        raise FileError(
+            f"image: {str(source)!r} is compressed by {how}, which imagecodecs reads; install it with  pip install 'img2tri[codecs]'"
+        ) from error
 
 
 def of_tiff(values: Pixels, notes: dict[str, Any], tags: Mapping[int, Any], turn: int) -> Decoded:

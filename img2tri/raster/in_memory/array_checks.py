@@ -64,6 +64,9 @@ def as_array(image: object, *, colours: bool = True, name: str = "image") -> Pix
         values = image if isinstance(image, np.ndarray) else np.asarray(image)
     except ValueError as error:
         raise ImageError(f"{name}: expected an array of pixels, found rows of unequal length") from error
+    except Exception as error:
+        # Libraries have errors of every type for what they cannot turn into an array, such as a tensor on a graphics card.
+        raise ImageError(f"{name}: expected an array of pixels, found a {type(image).__name__} that is none ({error})") from error
     if values.dtype.kind not in "buif":
         what = type(image).__name__ if values.ndim == 0 else f"an array of type {values.dtype}"
         raise ImageError(f"{name}: expected an array of bool, integer or floating point values, found {what}")
