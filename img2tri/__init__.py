@@ -50,7 +50,17 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from img2tri.app.explore import explore
     from img2tri.certificate.report import Report
-    from img2tri.errors import FileError, ImageError, Img2triError, MeshError, ParameterError
+    from img2tri.errors import (
+        ConfettiWarning,
+        ConnectivityWarning,
+        FileError,
+        ImageError,
+        Img2triError,
+        Img2triWarning,
+        MeshError,
+        ParameterError,
+        SizeWarning,
+    )
     from img2tri.mesh import TriangleMesh
     from img2tri.pipeline import mesh_image
 
@@ -66,9 +76,27 @@ _PLACES = {
     "ImageError": "errors",
     "FileError": "errors",
     "MeshError": "errors",
+    "Img2triWarning": "errors",
+    "SizeWarning": "errors",
+    "ConnectivityWarning": "errors",
+    "ConfettiWarning": "errors",
 }
 
-__all__ = ["FileError", "ImageError", "Img2triError", "MeshError", "ParameterError", "Report", "TriangleMesh", "explore", "mesh_image"]
+__all__ = [
+    "ConfettiWarning",
+    "ConnectivityWarning",
+    "FileError",
+    "ImageError",
+    "Img2triError",
+    "Img2triWarning",
+    "MeshError",
+    "ParameterError",
+    "Report",
+    "SizeWarning",
+    "TriangleMesh",
+    "explore",
+    "mesh_image",
+]
 
 
 def __getattr__(name: str) -> Any:

@@ -9,6 +9,13 @@ Everything a user can cause is an ``Img2triError``; each child is also the built
     ├── FileError      (OSError)      a file cannot be read or written
     └── MeshError      (ValueError)   arrays given as a mesh are not one
 
+What is told before the work, because it is hardly meant, is an ``Img2triWarning``::
+
+    Img2triWarning (UserWarning)
+    ├── SizeWarning           far more triangles are to be expected than were asked for
+    ├── ConnectivityWarning   a region is in pieces that touch at corners of pixels only
+    └── ConfettiWarning       most labels are no more than the edges between others
+
 A message names the parameter, what was expected, what was found, and, where it is not obvious, what to do.
 """
 
@@ -46,6 +53,22 @@ class FileError(Img2triError, OSError):
 
 class MeshError(Img2triError, ValueError):
     """Arrays given as a mesh are not one."""
+
+
+class Img2triWarning(UserWarning):
+    """Base of all that is told before the work, because it is hardly meant."""
+
+
+class SizeWarning(Img2triWarning):
+    """Far more triangles are to be expected than were asked for."""
+
+
+class ConnectivityWarning(Img2triWarning):
+    """A region is in pieces that touch at corners of pixels only."""
+
+
+class ConfettiWarning(Img2triWarning):
+    """Most labels are no more than the edges between others."""
 
 
 def finite(name: str, value: object, *, above: float | None = None, least: float | None = None, most: float | None = None) -> float:

@@ -6,6 +6,7 @@ image -> labels -> outlines -> points -> triangles -> mesh
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable
 from typing import Any, Unpack
 
@@ -20,6 +21,7 @@ from img2tri.paper.recipes import paper_mesh
 from img2tri.raster.decisions import decisions
 from img2tri.raster.in_memory.image_hash import image_hash
 from img2tri.raster.labels.cropping import crop
+from img2tri.raster.labels.forewarnings import forewarnings
 from img2tri.raster.labels.otsu_threshold import Level
 from img2tri.raster.labels.segmentation import Segmentation, segment, without_specks
 from img2tri.raster.reading import read
@@ -80,6 +82,7 @@ def mesh_image(image: Any, *, progress: Callable[[str, float], None] | None = No
     zones = segment(picture, **_with_paper_threshold(o))
     specks, holes = (_in_pixels(name, o[name], frame) for name in ("min_area", "fill_holes"))
     zones, removed = without_specks(zones, min_area=specks, fill_holes=holes, largest=o["largest"], connectivity=o["connectivity"])
+    warned = _forewarn(zones, frame, o, tell)
     check_periodic(o["periodic"], zones.labels, recipe=o["recipe"], smoothing=o["smoothing"])
 
     tell("outlines", 0.2)
@@ -104,7 +107,7 @@ def mesh_image(image: Any, *, progress: Callable[[str, float], None] | None = No
         Provenance(
             o["recipe"], kept, kept | _chosen(o, picture, zones, sizes, within), outlines, *pixels_beside(dual_edges),
             areas=pixel_areas(dual_edges) if zones.gray is None else enclosed_areas(outlines),  # gray values may place the outlines
-            counted={**made.counted, "removed": {**removed, **zones.counted}}, notes=decisions(picture, zones),
+            counted={**made.counted, "removed": {**removed, **zones.counted}}, notes=[*decisions(picture, zones), *warned],
             tolerance=within if o["recipe"] == "conforming" else None, min_angle=o["min_angle"] if o["recipe"] == "conforming" else None,
         ),
     )  # fmt: skip
@@ -122,6 +125,22 @@ def _teller(progress: Callable[[str, float], None] | None) -> Callable[[str, flo
     if progress is not None and not callable(progress):
         raise ParameterError(f"progress: expected what can be called with a stage and a fraction, found {shown(progress)}")
     return progress or (lambda *_: None)
+
+
+def _forewarn(zones: Segmentation, frame: Frame, o: MeshOptions, tell: Callable[[str, float], None]) -> list[str]:
+    """Tell before the work what is hardly meant: as warnings, to who follows the progress, and in the report."""
+    told = list(forewarnings(zones, connectivity=o["connectivity"], asked=_asked_triangles(zones, frame, o)))
+    for warning in told:
+        tell(str(warning), 0.1)
+        warnings.warn(warning, stacklevel=3)
+    return list(map(str, told))
+
+
+def _asked_triangles(zones: Segmentation, frame: Frame, o: MeshOptions) -> float | None:
+    """Return how many triangles of the edge length fill the image; None where the length is left open or differs from place to place."""
+    if not isinstance(o["edge_length"], (int, float, str)):
+        return None
+    return zones.labels.size * math.prod(frame.spacing) * 4 / math.sqrt(3) / frame.length("edge_length", o["edge_length"]) ** 2
 
 
 def _in_pixels(name: str, area: bool | float | str | None, frame: Frame) -> float | None:

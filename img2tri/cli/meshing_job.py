@@ -7,14 +7,16 @@ what is a mistake of ours is raised.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from img2tri.cli.job import Job, Outcome
 from img2tri.cli.stdin_stdout import DASH, STEM, from_stdin, named
-from img2tri.errors import Img2triError
+from img2tri.errors import Img2triError, Img2triWarning
 
 if TYPE_CHECKING:
     from img2tri.mesh import TriangleMesh
@@ -50,7 +52,8 @@ def _made(job: Job, progress: Progress) -> Outcome:
     from img2tri.views.formats.atomic_write import store, writable
 
     image = job.source or opened(job.image, job.options)
-    mesh = mesh_image(image, progress=progress, **job.options)
+    with _forewarned() as told:
+        mesh = mesh_image(image, progress=progress, **job.options)
     for path, given in job.meshes:
         mesh.save(path, **given)
     if job.plot:
@@ -60,9 +63,24 @@ def _made(job: Job, progress: Progress) -> Outcome:
     return Outcome(
         job.image,
         () if job.quiet else (*about(job.image, mesh), *_chosen(job, mesh)),
-        mesh.report.warnings if job.report else (),
+        (*told, *(mesh.report.warnings if job.report else ())),
         data=None if job.sent is None else _bytes(mesh, job.sent, job.sent_with),
     )
+
+
+@contextmanager
+def _forewarned() -> Iterator[list[str]]:
+    """Collect what is told before the work; the progress has shown it by then."""
+    told: list[str] = []
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("default")
+        warnings.simplefilter("always", Img2triWarning)
+        yield told
+    for warning in caught:
+        if issubclass(warning.category, Img2triWarning):
+            told.append(str(warning.message))
+        else:
+            warnings.warn_explicit(warning.message, warning.category, warning.filename, warning.lineno)
 
 
 def view(job: Job, command: str, progress: Progress) -> tuple[Outcome, str]:
@@ -71,10 +89,11 @@ def view(job: Job, command: str, progress: Progress) -> tuple[Outcome, str]:
     from img2tri.pipeline import mesh_image
 
     image = opened(job.image, job.options)
-    mesh = mesh_image(image, progress=progress, **job.options)
+    with _forewarned() as told:
+        mesh = mesh_image(image, progress=progress, **job.options)
     title = os.path.basename(job.image) if job.image != DASH else STEM
     text = page_about(mesh, meshed_pixels(image, job.options), title=title, command=command)
-    return Outcome(job.image, about(job.image, mesh), mesh.report.warnings), text
+    return Outcome(job.image, about(job.image, mesh), (*told, *mesh.report.warnings)), text
 
 
 def mesh_of(path: str, suffix: str | None) -> TriangleMesh:
@@ -130,7 +149,9 @@ def _chosen(job: Job, mesh: TriangleMesh) -> list[str]:
     settings = mesh.origin.settings if mesh.origin else {}
     length, threshold = settings["edge_length"], settings["threshold"]
     chosen = f"edge length {length if isinstance(length, str) else f'{length:g}'}"
-    chosen += "" if threshold is None else f", threshold {threshold:g} ({settings['threshold_from']})"
+    levels = threshold if isinstance(threshold, (list, tuple)) else [threshold]
+    chosen += "" if threshold is None else f", threshold {', '.join(f'{level:g}' for level in levels)} ({settings['threshold_from']})"
     count = len(mesh.origin.outlines.left) if mesh.origin and "min_area" not in job.options else 0
     chosen += "" if count < CONFETTI else f"; {count:,} outlines, of which --min-area 20px2 would drop specks"
-    return [f"{'chosen':<12}{chosen}", *([f"{'saved':<12}{', '.join(job.files)}"] if job.files else [])]
+    noted = [f"{'noted':<12}{note}" for note in mesh.report.notes]
+    return [f"{'chosen':<12}{chosen}", *noted, *([f"{'saved':<12}{', '.join(job.files)}"] if job.files else [])]

@@ -27,7 +27,7 @@ STARTS = {
     "TIFF": (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"), "NPY": (NPY_START,), "NPZ": (ZIP_START,), "NRRD": (NRRD_START,),
     "MetaImage": METAIMAGE_STARTS, "HDF5": (HDF5_START,),
 }  # fmt: skip
-SUFFIXES = {".dcm": "DICOM", ".dicom": "DICOM", ".nii": "NIfTI", ".nii.gz": "NIfTI"}
+MEDICAL_SUFFIXES = {".dcm": "DICOM", ".dicom": "DICOM", ".nii": "NIfTI", ".nii.gz": "NIfTI"}
 DECODERS = {
     "DICOM": decode_dicom, "NIfTI": decode_nifti, "NPY": decode_npy, "NPZ": decode_npz, "NRRD": decode_nrrd, "MetaImage": decode_metaimage,
     "HDF5": decode_hdf5,
@@ -101,7 +101,7 @@ def _known_start(source: Source, start: bytes) -> str | None:
             start = zlib.decompressobj(wbits=zlib.MAX_WBITS | 16).decompress(start, NIFTI_START)
     if start[344:348] == b"n+1\0" or start[4:8] == b"n+2\0":
         return "NIfTI"
-    return next((kind for suffix, kind in SUFFIXES.items() if str(source).lower().endswith(suffix)), None)
+    return next((kind for suffix, kind in MEDICAL_SUFFIXES.items() if str(source).lower().endswith(suffix)), None)
 
 
 def _is_zarr(path: Path) -> bool:

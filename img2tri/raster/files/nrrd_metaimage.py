@@ -1,8 +1,8 @@
 """NRRD (3D Slicer) and MetaImage (ITK, ITK-SNAP) -> values, the size of a pixel, and the names of segments.
 
 Both are a few lines of text and then the values, x running fastest, so a plane is an image as it is displayed, its first row at the top;
-a page is one slice across z. Each axis keeps the spacing noted for it, and nothing is turned by where the file says its axes point: a volume
-whose axes are oblique is sliced along its own.
+a page is one slice across z. Each axis keeps the spacing noted for it, and nothing is turned by where the file says its axes point: a
+volume whose axes are oblique is sliced along its own.
 
 NRRD: https://teem.sourceforge.net/nrrd/format.html. MetaImage: https://itk.org/Wiki/ITK/MetaIO/Documentation.
 """
@@ -25,7 +25,7 @@ from img2tri.raster.metadata.pixel_size import PixelSize, positive_size
 
 NRRD_START, METAIMAGE_STARTS = b"NRRD000", (b"ObjectType", b"NDims", b"Comment")
 LONGEST_HEADER = 2**20
-TYPES = {
+VOXEL_TYPES = {
     "i1": ("signed char", "int8", "int8_t", "MET_CHAR"),
     "u1": ("uchar", "unsigned char", "uint8", "uint8_t", "MET_UCHAR"),
     "i2": ("short", "short int", "signed short", "int16", "int16_t", "MET_SHORT"),
@@ -128,7 +128,7 @@ def _numbered(keys: dict[str, str]) -> list[tuple[str, str]]:
 
 
 def _dtype(name: str, source: Source) -> np.dtype[Any]:
-    found = next((code for code, names in TYPES.items() if name in names), None)
+    found = next((code for code, names in VOXEL_TYPES.items() if name in names), None)
     if found is None:
         raise ImageError(f"image: expected integers or floats in {str(source)!r}, found values of type {name!r}")
     return np.dtype(found)

@@ -19,7 +19,7 @@ from img2tri.errors import FileError, ImageError
 from img2tri.raster.files.byte_sources import Source
 from img2tri.raster.in_memory.array_checks import Pixels
 
-CHUNK = 2**20
+BYTES_AT_ONCE = 2**20
 
 
 @dataclass(frozen=True)
@@ -99,19 +99,19 @@ def read_plane(file: BinaryIO, source: Source, dtype: np.dtype[np.generic], plan
 def _parts(file: BinaryIO, encoding: str) -> Iterator[bytes]:
     """Yield what follows in a file, unpacked, in parts of bounded size."""
     if encoding == "raw":
-        while part := file.read(CHUNK):
+        while part := file.read(BYTES_AT_ONCE):
             yield part
     elif encoding == "gzip":
         unzip = zlib.decompressobj(zlib.MAX_WBITS | 32)  # with the header of gzip or of zlib
-        packed = file.read(CHUNK)
+        packed = file.read(BYTES_AT_ONCE)
         while packed and not unzip.eof:
-            yield unzip.decompress(packed, CHUNK)
-            packed = unzip.unconsumed_tail or file.read(CHUNK)
+            yield unzip.decompress(packed, BYTES_AT_ONCE)
+            packed = unzip.unconsumed_tail or file.read(BYTES_AT_ONCE)
         yield unzip.flush()
     else:
         unpack = bz2.BZ2Decompressor()
         while not unpack.eof:
-            packed = file.read(CHUNK) if unpack.needs_input else b""
+            packed = file.read(BYTES_AT_ONCE) if unpack.needs_input else b""
             if unpack.needs_input and not packed:
                 return
-            yield unpack.decompress(packed, CHUNK)
+            yield unpack.decompress(packed, BYTES_AT_ONCE)

@@ -15,6 +15,11 @@ from numpy.typing import NDArray
 
 from img2tri.arrays import Bools, Ints
 from img2tri.errors import ImageError
+from img2tri.raster.labels.label_maps import distinct
+
+THIN_SHARE = 0.01  # of the pixels: less than that are no lines that part regions
+MOST_INSIDE = 0.1  # of the pixels of a label that are off its edges: more are no lines
+LOOKED_AT = 2000  # rows and columns: enough for a hint
 
 
 def absorb_labels(
@@ -86,3 +91,31 @@ def _voted(labels: NDArray[Any], takers: Bools, at: Ints) -> tuple[NDArray[Any],
     most = (votes == votes.max(axis=0)) & there
     lowest = np.where(most, candidate, np.iinfo(labels.dtype).max).min(axis=0)
     return lowest, np.asarray(there.any(axis=0))
+
+
+def thin_separators(labels: NDArray[Any]) -> list[int]:
+    """Return the labels that are thin lines between three others or more, which `absorb_labels` would give to their neighbours.
+
+    Examples
+    --------
+    >>> lines = np.kron(np.arange(1, 10).reshape(3, 3), np.ones((6, 6), int))
+    >>> lines[5::6] = lines[:, 5::6] = 0
+    >>> thin_separators(lines)
+    [0]
+    """
+    labels = labels[:LOOKED_AT, :LOOKED_AT]
+    every = distinct(labels)
+    number = np.searchsorted(every, labels)
+    middle = number[1:-1, 1:-1]
+    inside = (middle == number[:-2, 1:-1]) & (middle == number[2:, 1:-1]) & (middle == number[1:-1, :-2]) & (middle == number[1:-1, 2:])
+    count, inner = np.bincount(number.reshape(-1), minlength=len(every)), np.bincount(middle[inside], minlength=len(every))
+    lines = []
+    for label in every[(count > THIN_SHARE * labels.size) & (inner < MOST_INSIDE * count)].tolist():
+        here = labels == label
+        beside = np.zeros(labels.shape, bool)
+        for one, other in ((slice(1, None), slice(None, -1)), (slice(None, -1), slice(1, None))):
+            beside[one] |= here[other]
+            beside[:, one] |= here[:, other]
+        if len(np.unique(labels[beside & ~here])) >= 3:
+            lines.append(int(label))
+    return lines

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from img2tri.arrays import Bools
 from img2tri.errors import ImageError, ParameterError
-from img2tri.raster.labels.absorbed_labels import absorb_labels
+from img2tri.raster.labels.absorbed_labels import absorb_labels, thin_separators
 from img2tri.raster.labels.colour_labels import label_by_colours
 from img2tri.raster.labels.colours_to_gray import alpha_is_the_picture, to_gray
 from img2tri.raster.labels.label_map_check import flat_values
@@ -125,6 +125,10 @@ def segment(
         if threshold is None:
             _check_thresholdable(without_hidden(picture.values, gone))
         found = _foreground(picture, gone, threshold=threshold, invert=invert)
+    lines = thin_separators(found.labels) if labels and absorb is None else []
+    if lines:
+        hint = f"label {lines[0]} is thin lines between others; absorb={lines[0]} would give them to their neighbours"
+        found = replace(found, notes=(*found.notes, hint))
     missing = 0 if picture.missing is None else int(np.count_nonzero(picture.missing))
     return replace(found, counted={"missing": missing} | found.counted)
 

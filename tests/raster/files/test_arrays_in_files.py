@@ -1,4 +1,4 @@
-"""Arrays in files, .npy, .npz, .nrrd, .mha, HDF5 and zarr: value for value, one plane of volumes, clear words where something is missing."""
+"""Arrays in files, .npy, .npz, .nrrd, .mha, HDF5 and zarr: value for value, one plane of volumes, clear words for what is missing."""
 
 from __future__ import annotations
 
