@@ -17,7 +17,6 @@ from img2tri.options.image_options import ReadOptions, SegmentOptions
 from img2tri.options.mesh_options import FillOptions, OutlineOptions, SizeOptions
 from img2tri.options.paper_options import PaperOptions
 from img2tri.options.table import MeshOptions, checked, of, plain
-from img2tri.paper.recipes import paper_mesh
 from img2tri.raster.decisions import decisions
 from img2tri.raster.in_memory.image_hash import image_hash
 from img2tri.raster.labels.cropping import crop
@@ -160,6 +159,8 @@ def _with_paper_threshold(o: MeshOptions) -> SegmentOptions:
 
 def _paper(zones: Segmentation, picture: Picture, sizes: Sizes, o: MeshOptions) -> RecipeMesh:
     """Mesh by a recipe of the paper."""
+    from img2tri.paper.recipes import paper_mesh
+
     paper = of(PaperOptions, o)
     if o["recipe"] == "structured" and o["edge_length"] is None and paper["step"] is None:
         paper["step"] = PAPER_STEP
