@@ -25,6 +25,8 @@ from img2tri.raster.labels.otsu_threshold import Level
 from img2tri.raster.labels.segmentation import Segmentation, segment, without_specks
 from img2tri.raster.reading import read
 from img2tri.recipes.conforming import Sizes, conform, trace_outlines, wanted_sizes
+from img2tri.recipes.mirrored import conform_symmetric
+from img2tri.shapes.mirror_symmetry import check_symmetric
 from img2tri.shapes.periodic.side_labels import check_periodic
 from img2tri.shapes.polygons import enclosed_areas
 from img2tri.shapes.trace.dual_edges import pixel_areas, pixels_beside
@@ -83,6 +85,7 @@ def mesh_image(image: Any, *, progress: Callable[[str, float], None] | None = No
     zones, removed = without_specks(zones, min_area=specks, fill_holes=holes, largest=o["largest"], connectivity=o["connectivity"])
     warned = _forewarn(zones, frame, o, tell)
     check_periodic(o["periodic"], zones.labels, recipe=o["recipe"], smoothing=o["smoothing"])
+    check_symmetric(o["symmetric"], picture.values, zones.labels, periodic=o["periodic"], smoothing=o["smoothing"])
 
     tell("outlines", 0.2)
     outlines, dual_edges = trace_outlines(zones, frame, connectivity=o["connectivity"], **of(OutlineOptions, o))
@@ -94,9 +97,13 @@ def mesh_image(image: Any, *, progress: Callable[[str, float], None] | None = No
     if o["recipe"] == "conforming":
         # Smoothing with a free boundary gets half of what outlines and mesh may differ by.
         spent = within / 2 if o["smoothing"] == "cotangent" else within
-        made = conform(
-            outlines, dual_edges, sizes, corners=o["corners"], periodic=o["periodic"], tolerance=spent, progress=tell, **of(FillOptions, o)
-        )  # fmt: skip
+        how: dict[str, Any] = {"corners": o["corners"], "periodic": o["periodic"], "tolerance": spent, **of(FillOptions, o)}
+        if o["symmetric"]:
+            made = conform_symmetric(
+                o["symmetric"], outlines, dual_edges, sizes, zones, frame, connectivity=o["connectivity"], progress=tell, **how
+            )  # fmt: skip
+        else:
+            made = conform(outlines, dual_edges, sizes, progress=tell, **how)
     else:
         made = _paper(zones, picture, sizes, o)
 

@@ -140,6 +140,7 @@ CHANGES = {
     "outline": (UNEVEN, {}, {"outline": "pixel"}),
     "corners": (COMB, {}, {"corners": "round"}),
     "keep_area": (UNEVEN, {"edge_length": 8}, {"edge_length": 8, "keep_area": False}),
+    "symmetric": (np.pad(np.ones((9, 12), bool), 3), {}, {"symmetric": "x"}, {"symmetric": "y"}),
     "periodic": (WRAPPED, {"labels": True}, {"labels": True, "periodic": "x"}, {"labels": True, "periodic": "y"}),
     "interior": (UNEVEN, {}, {"interior": "poisson"}),
     "gradation": (SHAPES, {"boundary_edge_length": 2, "edge_length": 12}, {"boundary_edge_length": 2, "edge_length": 12, "gradation": 1}),

@@ -65,6 +65,23 @@ class OutlineOptions(TypedDict, total=False):
     ]
 
 
+class SymmetryOptions(TypedDict, total=False):
+    """Options of `recipes.mirrored.conform_symmetric`."""
+
+    symmetric: Annotated[
+        str | None,
+        Option(
+            None,
+            '"x", "y" or "xy": left and right, bottom and top, or both are mirror images in the mesh as in the image; vertices lie '
+            "exactly on the axis. An image that is not its own mirror image is refused.",
+            none="a symmetric image gets a mesh that is not",
+            check=o.one_of("x", "y", "xy"),
+            sign="D",
+            recipes=("conforming",),
+        ),
+    ]
+
+
 class SizeOptions(TypedDict, total=False):
     """Options of `recipes.conforming.wanted_sizes`."""
 

@@ -16,7 +16,15 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast, get_args, get_type_hints
 
 from img2tri.errors import FileError, ParameterError, UnknownOptionError
 from img2tri.options.image_options import NameOptions, PartOptions, ReadOptions, SegmentOptions, SpeckOptions
-from img2tri.options.mesh_options import FillOptions, OutlineOptions, RecipeOptions, SizeOptions, SmoothOptions, ToleranceOptions
+from img2tri.options.mesh_options import (
+    FillOptions,
+    OutlineOptions,
+    RecipeOptions,
+    SizeOptions,
+    SmoothOptions,
+    SymmetryOptions,
+    ToleranceOptions,
+)
 from img2tri.options.option import Option, every
 from img2tri.options.paper_options import PaperOptions
 
@@ -27,7 +35,7 @@ G = TypeVar("G")
 
 
 class MeshOptions(
-    RecipeOptions, ReadOptions, PartOptions, SegmentOptions, SpeckOptions, NameOptions, OutlineOptions, SizeOptions,
+    RecipeOptions, ReadOptions, PartOptions, SegmentOptions, SpeckOptions, NameOptions, OutlineOptions, SymmetryOptions, SizeOptions,
     ToleranceOptions, FillOptions, SmoothOptions, PaperOptions, total=False,
 ):  # fmt: skip
     """Every option of `mesh_image`, for functions that hand them on: ``**options: Unpack[MeshOptions]``."""
@@ -37,7 +45,7 @@ class MeshOptions(
 HEADINGS: dict[str, tuple[Any, ...]] = {
     "what is meshed": (SegmentOptions, SpeckOptions, PartOptions),
     "where it lies": (ReadOptions, NameOptions),
-    "how it is meshed": (RecipeOptions, OutlineOptions, SizeOptions, ToleranceOptions, FillOptions, SmoothOptions),
+    "how it is meshed": (RecipeOptions, OutlineOptions, SymmetryOptions, SizeOptions, ToleranceOptions, FillOptions, SmoothOptions),
     "the paper's recipes only": (PaperOptions,),
 }
 

@@ -7,6 +7,7 @@ place     Chains -> dense outlines: where between two pixel centres the outline 
 sizes     How long edges should be: one size field, and how long the chords of outlines should be.
 simplify  Dense outlines -> coarse ones with the wanted edge length, within the tolerance, of the same topology.
 periodic  Opposite sides of an image divided alike.
+mirror_symmetry  The outlines of a symmetric image -> those of one half of it.
 polygons  Outlines -> shapely polygons: one coverage, neighbours sharing their vertices.
 
 Chains are open between two nodes, or rings; they are `img2tri.arrays.ChainIndex` throughout.

@@ -49,6 +49,7 @@ ARRIVE = {
     "tolerance": (["--tolerance", "0.25px"], "0.25px"),
     "keep_area": (["--no-keep-area"], False),
     "periodic": (["--periodic", "xy"], "xy"),
+    "symmetric": (["--symmetric", "xy"], "xy"),
     "interior": (["--interior", "poisson"], "poisson"),
     "smoothing": (["--smoothing", "cotangent"], "cotangent"),
     "iterations": (["--iterations", "3"], 3),
