@@ -14,8 +14,10 @@ The house around the stages:
     recipes/      ways through the stages; only recipes hand data from one stage to the next
     paper/        the paper this library began with: every function of its listing, and its two recipes
     certificate/  `Report`: what a finished mesh keeps of what was promised, measured
-    mesh          `TriangleMesh`, the result, with methods for all that can be done with it; `mesh_exports` hands it on, `mesh_pictures`
-    shows it app/          the viewer with knobs, in a browser and in notebooks
+    mesh          `TriangleMesh`, the result, with methods for all that can be done with it; `mesh_exports` hands it on,
+                  `mesh_pictures` shows it
+    tiles/        `mesh_tiles`: one image larger than memory, in parts, on one process or a Dask cluster
+    app/          the viewer with knobs, in a browser and in notebooks
     types         records handed between stages; `arrays` and `errors` are what all files share
     cli/          the command line, ``img2tri``; ``python -m img2tri`` begins in `__main__`
 
@@ -63,11 +65,13 @@ if TYPE_CHECKING:
     )
     from img2tri.mesh import TriangleMesh
     from img2tri.pipeline import mesh_image
+    from img2tri.tiles.tiling import mesh_tiles
 
 __version__ = "0.1.0"
 
 _PLACES = {
     "mesh_image": "pipeline",
+    "mesh_tiles": "tiles.tiling",
     "explore": "app.explore",
     "TriangleMesh": "mesh",
     "Report": "certificate.report",
@@ -96,6 +100,7 @@ __all__ = [
     "TriangleMesh",
     "explore",
     "mesh_image",
+    "mesh_tiles",
 ]
 
 

@@ -38,11 +38,12 @@ ORDER = [
     {"mesh_exports"},
     {"mesh"},
     {"pipeline"},
+    {"tiles"},
     {"app"},
     {"cli"},
     {"__main__"},
 ]
-FOLDERS = {*ROOMS, "paper", "recipes", "certificate", "options", "app", "cli"}  # their files may import each other
+FOLDERS = {*ROOMS, "paper", "recipes", "certificate", "options", "tiles", "app", "cli"}  # their files may import each other
 # numpy is at home everywhere.
 LIBRARIES = {
     "arrays": {"scipy"},  # sorts by counting
@@ -54,13 +55,14 @@ LIBRARIES = {
     "recipes": {"scipy"},
     "certificate": {"shapely", "scipy"},
     "mesh_pictures": {"matplotlib"},
+    "tiles": {"scipy", "shapely", "zarr", "h5py", "tifffile", "distributed", "vtkmodules"},
     "app": {"starlette", "uvicorn", "anywidget", "traitlets", "matplotlib"},
     "mesh_exports": {"skfem", "shapely", "trimesh", "pyvista"},  # for types only
     "mesh": {"matplotlib"},  # for types only
     "cli": {"rich"},
 }
 HEAVY = {"cv2", "PIL", "tifffile", "scipy", "shapely", "igl", "pythoncdt", "trimesh", "pyvista", "vtkmodules", "matplotlib", "rich"}
-HEAVY |= {"starlette", "uvicorn", "anywidget"}
+HEAVY |= {"starlette", "uvicorn", "anywidget", "zarr", "h5py", "dask", "distributed"}
 ALLOWED = {"pyproject.toml", "README.md", "LICENSE", "img2tri", "tests", "examples", "data"}
 
 in_checkout = pytest.mark.skipif(not (ROOT / "pyproject.toml").exists(), reason="only where the sources are checked out")

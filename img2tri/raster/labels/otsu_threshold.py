@@ -132,14 +132,31 @@ def _otsu(values: Pixels, *, chosen: bool) -> Any:
             "labels=True makes each value a region of its own, threshold= a number or 'otsu' takes them as gray values"
         )
     classes, counts, sums = _histogram(values)
+    best = otsu_class(counts, sums)
+    flat = values.reshape(-1)
+    return flat.max(where=classes <= best, initial=flat.min())
+
+
+def otsu_class(counts: Floats, sums: Floats) -> int:
+    """Return the last class of the lower part, as Otsu's method divides a histogram.
+
+    Parameters
+    ----------
+    counts, sums
+        (k,) float64, the number of values in each class, rising with the value, and their sum.
+
+    Examples
+    --------
+    >>> otsu_class(np.array([5.0, 1, 0, 1, 5]), np.array([0.0, 1, 0, 3, 20]))
+    1
+    """
     # Number and sum of all values up to each class. Empty classes change neither, so ties are exact and the first wins.
     below, total = np.cumsum(counts), np.cumsum(sums)
     parts = (below > 0) & (below < below[-1])
-    below, mean, total = below[parts], total[-1] / below[-1], total[parts]
-    between = (mean * below - total) ** 2 / (below * (classes.size - below))
-    best = np.flatnonzero(parts)[between.argmax()]
-    flat = values.reshape(-1)
-    return flat.max(where=classes <= best, initial=flat.min())
+    size, mean = below[-1], total[-1] / below[-1]
+    below, total = below[parts], total[parts]
+    between = (mean * below - total) ** 2 / (below * (size - below))
+    return int(np.flatnonzero(parts)[between.argmax()])
 
 
 def _histogram(values: Pixels) -> tuple[NDArray[np.uint8] | NDArray[np.uint16], Floats, Floats]:

@@ -78,7 +78,7 @@ def triangulate(points: Floats, segments: Ints, left: Ints, right: Ints) -> tupl
     (4, array([7, 7, 7, 7]))
     """
     check_pslg(points, segments, left, right)
-    triangulation = _insert(points, segments)
+    triangulation = insert(points, segments)
     triangles, regions = _label(triangulation, len(points), segments, left, right)
     inside = np.flatnonzero(regions)
     return triangles[inside], regions[inside]
@@ -128,7 +128,7 @@ def ruppert(points: Floats, segments: Ints, left: Ints, right: Ints, min_angle: 
     https://doi.org/10.1006/jagm.1995.1021.
     """
     check_pslg(points, segments, left, right)
-    triangulation = _insert(points, segments)
+    triangulation = insert(points, segments)
     _, regions = _label(triangulation, len(points), segments, left, right)
     outside = set(np.flatnonzero(regions == 0).tolist())
     budget = 20 * len(points) + 10_000
@@ -155,7 +155,7 @@ def check_pslg(points: Floats, segments: Ints, left: Ints, right: Ints) -> None:
         raise PslgError("segments: expected two different points each", np.flatnonzero(none))
 
 
-def _insert(points: Floats, segments: Ints) -> pythoncdt.Triangulation:
+def insert(points: Floats, segments: Ints) -> pythoncdt.Triangulation:
     """Triangulate; the outer triangles and holes are still there."""
     triangulation = pythoncdt.Triangulation(pythoncdt.VertexInsertionOrder.AUTO, pythoncdt.IntersectingConstraintEdges.NOT_ALLOWED, 0.0)
     try:

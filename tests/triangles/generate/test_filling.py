@@ -223,7 +223,7 @@ def test_nothing_to_mesh():
 
 def test_a_large_area_costs_its_outline():
     calls = []
-    original = delaunay._insert
+    original = delaunay.insert
 
     def counted(points, segments):
         calls.append(len(points))
@@ -231,7 +231,7 @@ def test_a_large_area_costs_its_outline():
 
     given = network((ring(314, 400), 1, 0))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(delaunay, "_insert", counted)
+        patch.setattr(delaunay, "insert", counted)
         vertices, triangles, _ = fill(*given, edge_length=8.0)
     assert max(calls) < len(vertices) / 3
     assert oracles.areas(vertices, triangles).sum() == pytest.approx(area_of_ring(314, 400))

@@ -1,0 +1,143 @@
+"""One block of an image -> a piece of the mesh that fits those of its neighbours: the work of one task."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from img2tri.arrays import Floats, Ints, Points, as_complex, as_rows, runs
+from img2tri.certificate.outline_distance import SAMPLE_STEP, SegmentSet
+from img2tri.errors import Img2triError, MeshError
+from img2tri.options.mesh_options import FillOptions, OutlineOptions, SizeOptions
+from img2tri.options.table import MeshOptions, of
+from img2tri.raster.labels.segmentation import Segmentation
+from img2tri.recipes.conforming import conform, trace_outlines, wanted_sizes
+from img2tri.tiles.merging import merge
+from img2tri.tiles.pieces import Piece, SeamError, join_pieces
+from img2tri.tiles.plans import SMOOTHED, Cell, Plan, colour
+from img2tri.tiles.sources import PixelSource
+from img2tri.tiles.storage import facts_of, load_piece, lost_name, packed, piece_path, write
+from img2tri.triangles.tools.topology import curve_edges
+from img2tri.types import Frame, Outlines
+
+GROSS = 1.0  # px beside twice the tolerance: what no outline of the mesh is off those of the image
+MARGIN_SCALES = (1, 2, 4)  # of the margin: where pieces do not fit, more is looked at and replaced
+
+
+def mesh_block(plan: Plan, source: PixelSource, folder: Path, cell: Cell) -> dict[str, Any]:
+    """Mesh a block, keep its piece on disk, and return what is known of it; at once if it is there already.
+
+    Raises
+    ------
+    Img2triError
+        Names the block.
+    """
+    path = piece_path(folder, cell)
+    if path.exists():
+        return facts_of(path)
+    rows, columns = plan.window(cell, 0)
+    try:
+        piece, lost, facts = _fitting(plan, source, folder, cell)
+        write(path, packed(piece, facts, **lost))
+    except Img2triError as error:
+        where = f"rows {rows.start} to {rows.stop}, columns {columns.start} to {columns.stop}"
+        raise type(error)(f"{where}: {error}") from error
+    return facts
+
+
+def _fitting(plan: Plan, source: PixelSource, folder: Path, cell: Cell) -> tuple[Piece, dict[str, Any], dict[str, Any]]:
+    near = [other for other in plan.neighbours(cell) if colour(other) < colour(cell)]
+    loaded = [load_piece(folder, plan, other, colour(cell)) for other in near]
+    finished = join_pieces([piece for piece, _ in loaded])
+    within = plan.frame.length("tolerance", plan.options["tolerance"]) / plan.frame.pixel
+    problem: SeamError | None = None
+    for scale in MARGIN_SCALES:
+        rows, columns = plan.window(cell, scale * plan.margin + SMOOTHED)
+        mesh, outlines = window_mesh(source.read(rows, columns), plan, rows, columns)
+        off, territory = _measure(outlines), plan.territory(cell, scale)
+        try:
+            piece, replaced = merge(mesh, finished, territory, off, tolerance=within, min_angle=plan.options["min_angle"])
+            distance = _distance(piece, off)
+            if distance > GROSS + 2 * within:
+                raise SeamError(f"an edge of the mesh is {distance:.3g} px off the outlines of the image")
+        except SeamError as error:
+            problem = error
+            continue
+        lost, first = {}, 0
+        for other, (old, numbers) in zip(near, loaded, strict=True):
+            gone = replaced[first : first + len(old.triangles)]
+            first += len(old.triangles)
+            if gone.any():
+                lost[lost_name(other)] = numbers[gone]
+        facts = {"cell": list(cell), "scale": scale, "replaced": int(replaced.sum()), "distance": distance}
+        return piece, lost, facts
+    assert problem is not None, "there is a scale"
+    at = f" at {as_rows(plan_world(plan, problem.at[:1]))[0].round(2).tolist()}" if len(problem.at) else ""
+    raise MeshError(
+        f"the mesh of this block and those of its neighbours could not be joined{at}: {problem}; "
+        "try another edge_length or tolerance, or mesh_image(..., crop=) for the parts"
+    ) from problem
+
+
+def _measure(outlines: tuple[Points, Outlines] | None) -> Callable[[Points, Ints], Floats]:
+    """Return a function that tells how far edges are from dense outlines, px."""
+    if outlines is None:
+        return lambda _, edges: np.zeros(len(edges))
+    dense = SegmentSet(as_rows(outlines[0]), outlines[1].segments[0])
+
+    def off(z: Points, edges: Ints) -> Floats:
+        a, b = z[edges].T
+        count = np.maximum(np.ceil(np.abs(b - a) / SAMPLE_STEP).astype(np.int64), 1) + 1
+        which, place = runs(count)
+        distance = dense.distance(as_rows(a[which] + (place / (count - 1)[which]) * (b - a)[which]))
+        return np.maximum.reduceat(distance, np.cumsum(count) - count) if len(edges) else np.zeros(0)
+
+    return off
+
+
+def _distance(piece: Piece, off: Callable[[Points, Ints], Floats]) -> float:
+    """How far the boundary and interface edges of a piece are from the outlines of the image, px; edges of the seam are none."""
+    n = len(piece.vertices)
+    edges = curve_edges(piece.triangles, piece.regions) if len(piece.triangles) else np.zeros((0, 2), np.int64)
+    inner = np.sort(piece.seam, axis=1)
+    edges = edges[~np.isin(edges.min(axis=1) * n + edges.max(axis=1), inner[:, 0] * n + inner[:, 1])]
+    return float(off(piece.vertices, edges).max(initial=0.0))
+
+
+def plan_world(plan: Plan, places: Points) -> Points:
+    """Places of the plane in the world."""
+    world = plan.frame.world(as_rows(places))
+    return np.asarray(world[:, 0] + 1j * world[:, 1])
+
+
+def segmentation(values: NDArray[Any], plan: Plan) -> Segmentation:
+    """Find the regions in a window."""
+    o = plan.options
+    if o["labels"]:
+        numbers = values.astype(np.int64) if values.dtype == np.uint64 else values
+        if o["labels"] is not True:
+            numbers = np.where(np.isin(numbers, o["labels"]), numbers, numbers.dtype.type(o["background"] or 0))
+        return Segmentation(numbers, o["background"])
+    mask = values if plan.level is None else values > plan.level
+    return Segmentation(~mask if o["invert"] else mask, 0, None, values if plan.gray else None, plan.place)
+
+
+def window_mesh(values: NDArray[Any], plan: Plan, rows: slice, columns: slice) -> tuple[Piece, tuple[Points, Outlines] | None]:
+    """Mesh a window, and return the mesh in the plane of the whole image, with its dense outlines; no outlines where nothing is meshed."""
+    zones, whole, o = segmentation(values, plan), plan.frame, cast(MeshOptions, plan.options)
+    if zones.background is not None and not (zones.labels != zones.background).any():
+        return Piece.empty(), None
+    frame = Frame(values.shape[:2], whole.spacing, (0.0, 0.0), whole.upward)
+    outlines, dual_edges = trace_outlines(zones, frame, connectivity=o["connectivity"], **of(OutlineOptions, o))
+    sizes = wanted_sizes(labels=zones.labels, dual_edges=dual_edges, frame=frame, **of(SizeOptions, o))
+    within = frame.length("tolerance", o["tolerance"]) / frame.pixel
+    made = conform(outlines, dual_edges, sizes, corners=o["corners"], tolerance=within, **of(FillOptions, o))
+    # The origin of the plane is where row 0 begins, or where the last row ends.
+    shift = complex(*whole.plane(rows.stop if whole.upward else rows.start, columns.start))
+    none = np.zeros((0, 2), np.int64)
+    piece = Piece(as_complex(made.vertices) + shift, made.triangles, outlines.labels[made.regions], none, none[:, 0])
+    return piece, (as_complex(outlines.points) + shift, outlines)

@@ -1,0 +1,294 @@
+"""A new mesh joined to finished pieces: what it adds to them, with no vertex hanging and no triangle twice.
+
+Where the new mesh and the finished pieces agree, it goes on beyond their border as it is. Where they do not, its triangles near the border
+give way, and the gap is triangulated: the border stays, outlines are spliced, points between keep clear, all is smoothed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import shapely
+
+from img2tri.arrays import Bools, Floats, Ints, Points, as_rows
+from img2tri.tiles.attempts import EATEN, MOST_ATTEMPTS, SEGMENT_LENGTHS, WIDTHS, Attempt
+from img2tri.tiles.cavities import Gap, GapWalls, gap_filled, improved, longest_sides
+from img2tri.tiles.pieces import Piece, SeamError, Sides, evened, find_stubs, seams_around, taken
+from img2tri.tiles.splices import Ways, splice
+from img2tri.triangles.angles import smallest_angles
+
+LOOSE_CLEARANCE = 0.66  # of the longest edge at a vertex: loose points nearer to the border are left out
+SAMPLES = 4  # places along each edge of the border, to measure distances to
+# Of the margin: from where on stubs, walls and triangles of the gap do not count. It is open at its ends, beyond what is taken.
+WALLED, STUBS, FILLED, MET, LOST, TAKEN = 0.85, 0.8, 0.7, 0.6, 0.5, 0.35
+
+
+@dataclass(frozen=True)
+class Territory:
+    """Where a piece may take triangles.
+
+    Attributes
+    ----------
+    outside
+        Function of places (k,) that returns how far they lie outside of the piece's own block; 0 within.
+    takes
+        Function of places (k,): whether a triangle whose middle lies there is the piece's, if no finished piece covers it.
+    margin
+        How far outside the new mesh is looked at.
+    """
+
+    outside: Callable[[Points], Floats]
+    takes: Callable[[Points], Bools]
+    margin: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Both:
+    """New mesh and finished pieces in the same numbers: vertices, triangles with codes of their regions, and the border of the old ones.
+
+    `border` has the finished pieces on its left, `own` and `beyond` are the codes of the regions on both sides;
+    `fresh` are those edges of it beyond which finished triangles were given up.
+    """
+
+    z: Points
+    outside: Floats
+    new: Ints
+    new_codes: Ints
+    old: Ints
+    border: Ints
+    own: Ints
+    beyond: Ints
+    fresh: Bools
+
+    def covered(self, places: Points) -> Bools:
+        """Tell which places lie in finished pieces, or on their border."""
+        result = np.zeros(len(places), bool)
+        if self.tree is not None:
+            result[np.unique(self.tree.query(shapely.points(places.real, places.imag), predicate="intersects")[0])] = True
+        return result
+
+    @cached_property
+    def tree(self) -> shapely.STRtree | None:
+        """The finished triangles by place."""
+        return shapely.STRtree(shapely.polygons(as_rows(self.z[self.old.ravel()]).reshape(-1, 3, 2))) if len(self.old) else None
+
+
+def merge(
+    mesh: Piece, finished: Piece, territory: Territory, off: Callable[[Points, Ints], Floats], *, tolerance: float, min_angle: float
+) -> tuple[Piece, Bools]:
+    """Return what a new mesh adds to finished pieces, and which of their triangles (m,) it replaces, which are few.
+
+    Parameters
+    ----------
+    mesh
+        The new mesh, which reaches beyond its block on all sides by more than the margin.
+    finished
+        The pieces it must fit, joined.
+    territory
+        Where it may take triangles.
+    off
+        Function of places and edges between them, that returns how far each edge is from the outlines of the image, px.
+    tolerance, min_angle
+        As promised of the whole mesh; px, degrees.
+
+    Raises
+    ------
+    SeamError
+        If outlines do not correspond, or no good triangles were found for the gap, whatever its width.
+    """
+    labels = np.unique(np.concatenate([mesh.regions, finished.regions, finished.beyond]))
+    attempt = Attempt(0, [], TAKEN * territory.margin)
+    middle = finished.vertices[finished.triangles].mean(axis=1)
+    far = territory.outside(finished.vertices)[finished.triangles].max(axis=1) > LOST * territory.margin
+    for _ in range(MOST_ATTEMPTS):
+        lost = attempt.near(territory.margin * np.asarray(EATEN), middle) & ~far
+        both = _together(mesh, finished, lost, labels, territory)
+        try:
+            return _merged(both, labels, territory, attempt, off, tolerance, min_angle), lost
+        except SeamError as error:
+            attempt, problem = attempt.raised(error.at), error
+    raise problem
+
+
+def _together(mesh: Piece, finished: Piece, lost: Bools, labels: Ints, territory: Territory) -> _Both:
+    """Bring both into the same numbers; only what is near counts, and of the finished triangles those not given up."""
+    z, number = np.unique(np.concatenate([mesh.vertices, finished.vertices]), return_inverse=True)
+    n, margin = len(z), territory.margin
+    new, old = number[mesh.triangles], number[finished.triangles + len(mesh.vertices)]
+    seam, beyond_seam = number[finished.seam + len(mesh.vertices)], finished.beyond
+    before = seam[:, 0] * n + seam[:, 1]
+    if lost.any():
+        seam, beyond_seam = seams_around(old, finished.regions, ~lost, seam, beyond_seam, n)
+    outside = territory.outside(z)
+    near = territory.outside(z[new].mean(axis=1)) < margin
+    new, codes = new[near], np.searchsorted(labels, mesh.regions[near]) + 1
+    near = (territory.outside(z[old].mean(axis=1)) < 2 * margin) & ~lost
+    old, old_codes = old[near], np.searchsorted(labels, finished.regions[near]) + 1
+    border, owner = Sides.of(old, n).bare()
+    true = (outside[border] < margin).all(axis=1)
+    border, owner = border[true], owner[true]
+    beyond = np.zeros(len(border), np.int64)
+    keys, wanted = seam[:, 0] * n + seam[:, 1], border[:, 0] * n + border[:, 1]
+    if len(keys):
+        order = np.argsort(keys)
+        at = order[np.minimum(np.searchsorted(keys, wanted, sorter=order), len(keys) - 1)]
+        goes_on = keys[at] == wanted
+        beyond[goes_on] = np.searchsorted(labels, beyond_seam[at[goes_on]]) + 1
+    fresh = (beyond > 0) & ~np.isin(wanted, before)
+    return _Both(z, outside, new, codes, old, border, old_codes[owner], beyond, fresh)
+
+
+def _merged(
+    both: _Both,
+    labels: Ints,
+    territory: Territory,
+    attempt: Attempt,
+    off: Callable[[Points, Ints], Floats],
+    tolerance: float,
+    min_angle: float,
+) -> Piece:
+    z, new, codes = both.z, both.new, both.new_codes
+    sides = Sides.of(new, len(z))
+    goes_on = both.beyond > 0
+    covered = both.covered(z[new].mean(axis=1))
+    stays = ~covered & _clear(both, goes_on & ~_agreed(both, sides), attempt)
+    triangles, code = new[stays], codes[stays]
+    # The border of the finished pieces where no triangle that stays is on the other side.
+    rim = goes_on & ~_met(both.border, triangles, len(z))
+    if (rim & (both.outside[both.border].max(axis=1) < FILLED * territory.margin)).any():
+        z, made, made_code = gap_filled(_gap(both, sides, stays, covered, rim, territory, attempt, tolerance))
+        triangles, code = np.concatenate([triangles, made]), np.concatenate([code, made_code])
+        is_gap = np.arange(len(triangles)) >= len(triangles) - len(made)
+        fixed = np.zeros(len(both.z), bool)
+        fixed[both.old] = True
+        # An angle that the image's own corners force is no fault of the seam.
+        least = min(min_angle, float(smallest_angles(both.z, new).min()))
+        z, triangles, code = improved(z, triangles, code, is_gap, fixed, both.border, least - 1e-9)
+        _check_outlines(z, triangles, code, both, territory, off, tolerance)
+    near = rim & (both.outside[both.border].max(axis=1) < MET * territory.margin)
+    lonely = ~_met(both.border[near], triangles, len(z))
+    if lonely.any():
+        raise SeamError("an edge of the finished pieces has no triangle beyond", z[both.border[near][lonely, 0]])
+    met = both.border[goes_on][:, ::-1]
+    middle = z[triangles].mean(axis=1)
+    eligible = territory.outside(z)[triangles].max(axis=1) < MET * territory.margin
+    radii = np.asarray(EATEN)
+    first = (territory.takes(middle) | attempt.near(territory.margin * (radii + 0.1) * (radii > 0), middle)) & eligible
+    takes = evened(triangles, code, first, eligible, met, len(z))
+    lonely = ~_met(both.border[both.fresh], triangles[takes], len(z))
+    if lonely.any():
+        raise SeamError("what was given up is not filled", z[both.border[both.fresh][lonely, 0]])
+    return taken(z, triangles, labels[code - 1], takes, met, labels[both.own[goes_on] - 1])
+
+
+def _check_outlines(
+    z: Points, triangles: Ints, code: Ints, both: _Both, territory: Territory, off: Callable[[Points, Ints], Floats], tolerance: float
+) -> None:
+    """Refuse edges along new outlines that are off those of the image, unless the new mesh is off there by itself."""
+    edges = _outline_edges(triangles, code, len(z))
+    edges = edges[territory.outside(z[edges]).max(axis=1) < MET * territory.margin]
+    known = _outline_edges(both.new, both.new_codes, len(z))
+    known = known[both.outside[known].max(axis=1) < MET * territory.margin]
+    for old in (known, both.border):
+        edges = edges[~np.isin(edges.min(axis=1) * len(z) + edges.max(axis=1), old.min(axis=1) * len(z) + old.max(axis=1))]
+    if len(edges):
+        distance = off(z, edges)
+        allowed = max(tolerance, float(off(both.z, known).max(initial=0.0)) if distance.max() > tolerance else 0.0)
+        if (distance > allowed * (1 + 1e-9)).any():
+            raise SeamError("an outline is off that of the image", z[edges[distance > allowed]].mean(axis=1))
+
+
+def _outline_edges(triangles: Ints, code: Ints, n: int) -> Ints:
+    """Return the edges (k, 2) between different regions, and between a region and nothing."""
+    sides = Sides.of(triangles, n)
+    left, right = sides.codes(code)
+    edges: Ints = np.stack([sides.low, sides.high], axis=1)[left != right]
+    return edges
+
+
+def _met(border: Ints, triangles: Ints, n: int) -> Bools:
+    """Tell which border edges have one of the triangles on their right."""
+    return np.isin(border[:, 0] * n + border[:, 1], triangles[:, [1, 2, 0]] * n + triangles)
+
+
+def _agreed(both: _Both, sides: Sides) -> Bools:
+    """Tell which border edges the new mesh has too, with a triangle of the right region beyond."""
+    n, low, high = len(both.z), both.border.min(axis=1), both.border.max(axis=1)
+    keys = sides.low * n + sides.high
+    if not len(keys):
+        return np.zeros(len(low), bool)
+    at = np.minimum(np.searchsorted(keys, low * n + high), len(keys) - 1)
+    left, right = sides.codes(both.new_codes)
+    there = np.where(both.border[:, 0] == low, right[at], left[at])
+    return np.asarray((keys[at] == low * n + high) & (there == both.beyond))
+
+
+def _clear(both: _Both, rim: Bools, attempt: Attempt) -> Bools:
+    """Tell which new triangles have no vertex in finished pieces, nor too near to a border they do not fit."""
+    z, new = both.z, both.new
+    own = np.unique(new)
+    gone = np.zeros(len(z), bool)
+    gone[own] = _distance(both, rim, z[own]) < attempt.of(WIDTHS, z[own]) * longest_sides(z, new)[own]
+    shared = np.zeros(len(z), bool)
+    shared[both.old] = True
+    loose = own[~shared[own]]
+    gone[loose] |= both.covered(z[loose])
+    return np.asarray(~gone[new].any(axis=1))
+
+
+def _distance(both: _Both, rim: Bools, places: Points) -> Floats:
+    """Distance of places from the edges of a rim, measured to samples."""
+    from scipy.spatial import cKDTree
+
+    if not rim.any():
+        return np.full(len(places), np.inf)
+    a, b = both.z[both.border[rim]].T
+    samples = np.concatenate([(a[:, None] + np.arange(SAMPLES) / SAMPLES * (b - a)[:, None]).ravel(), b])
+    return np.asarray(cKDTree(as_rows(samples)).query(as_rows(places))[0])
+
+
+def _gap(
+    both: _Both, sides: Sides, stays: Bools, covered: Bools, rim: Bools, territory: Territory, attempt: Attempt, tolerance: float
+) -> Gap:
+    """Find the walls of the gap, and the points in it."""
+    z, n, margin = both.z, len(both.z), territory.margin
+    pinned = np.zeros(n, bool)
+    pinned[both.new[stays]] = True
+    held = np.append(stays, False)
+    left, right = sides.codes(both.new_codes)
+
+    # The border of the finished pieces, and that of the triangles that stay.
+    walls = [GapWalls(both.border[rim], np.zeros(rim.sum(), np.int64), both.beyond[rim])]
+    keys = both.border * n + both.border[:, ::-1]
+    one = (held[sides.left] != held[sides.right]) & ~np.isin(sides.low * n + sides.high, keys)
+    segments = np.stack([sides.low, sides.high], axis=1)[one]
+    walls.append(GapWalls(segments, np.where(held[sides.left], 0, left)[one], np.where(held[sides.right], 0, right)[one]))
+
+    # Outlines through it.
+    ways = Ways.of(sides, both.new_codes, n)
+    stubs = find_stubs(z, both.border, both.beyond)
+    # The outlines of both differ, but the middle of a triangle beside them tells on which side of the border one is.
+    known = np.append(stays | covered, False)
+    settled = (known[sides.left] | known[sides.right])[ways.edge]
+    on_rim = np.zeros(n, bool)
+    on_rim[both.border[rim]] = True
+    wanted = on_rim[stubs.at] & ~pinned[stubs.at] & (both.outside[stubs.at] < STUBS * margin)
+    stubs = stubs.chosen(wanted)
+    added, segments, low, high = splice(z, ways, stubs, attempt.of(SEGMENT_LENGTHS, z[stubs.at]), pinned, settled, tolerance)
+    walls.append(GapWalls(segments, low, high))
+
+    # Loose points, clear of the border.
+    loose = np.zeros(n, bool)
+    loose[both.new[~stays]] = True
+    loose[both.old] = False
+    loose[ways.start] = loose[ways.stop] = False
+    loose = np.flatnonzero(loose & ~pinned)
+    loose = loose[(_distance(both, rim, z[loose]) > LOOSE_CLEARANCE * longest_sides(z, both.new)[loose]) & ~both.covered(z[loose])]
+
+    every = GapWalls.together(walls)
+    z = np.concatenate([z, added])
+    near = np.asarray((np.concatenate([both.outside, territory.outside(added)])[every.segments] < WALLED * margin).all(axis=1))
+    return Gap(z, every.chosen(near), loose, lambda places: territory.outside(places) < FILLED * margin)

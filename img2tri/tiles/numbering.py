@@ -1,0 +1,101 @@
+"""The proof that all pieces fit, edge by edge, and the numbers of vertices in the whole mesh.
+
+In: the seams of all pieces. Every edge of a seam has to be that of exactly one other piece, run through the other way, between vertices of
+the same bits; if one is not, there is no mesh but an error. Out: for each piece which of its vertices are its own, and the numbers of those
+it shares. Only seams are held, nothing that grows with the area of the image.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from img2tri.arrays import Ints, Points
+from img2tri.errors import MeshError
+
+
+@dataclass(frozen=True, eq=False)
+class Seam:
+    """What of a piece others share.
+
+    Attributes
+    ----------
+    count
+        How many vertices the piece has.
+    numbers
+        (k,) int64, its vertices on seams.
+    places
+        (k,) complex, where they are.
+    edges
+        (e, 2) int64, its seam edges, as places in `numbers`.
+    """
+
+    count: int
+    numbers: Ints
+    places: Points
+    edges: Ints
+
+
+def numbered_vertices(seams: Sequence[Seam]) -> tuple[list[tuple[int, Ints]], int]:
+    """Give the vertices of all pieces numbers, each one.
+
+    Parameters
+    ----------
+    seams
+        Of all pieces, in their order. A vertex on a seam belongs to the first piece that has it.
+
+    Returns
+    -------
+    numbers : list of (first, shared)
+        For each piece the number of the first of its own vertices, which follow each other, and for each vertex on its seam the number,
+        or -1 if it is its own.
+    total : int
+
+    Raises
+    ------
+    MeshError
+        If an edge of a seam has no partner, or two.
+    """
+    places, vertex = np.unique(np.concatenate([seam.places for seam in seams]), return_inverse=True)
+    piece = np.repeat(np.arange(len(seams)), [len(seam.numbers) for seam in seams])
+    first = np.cumsum([0, *(len(seam.numbers) for seam in seams)])
+    edges = np.concatenate([vertex[seam.edges + k] for seam, k in zip(seams, first, strict=False)])
+    _check(places, edges)
+    owner = np.full(len(places), len(seams))
+    np.minimum.at(owner, vertex, piece)
+    own = owner[vertex] == piece
+    result, total, known = [], 0, np.full(len(places), -1)
+    for k, seam in enumerate(seams):
+        mine, at = own[first[k] : first[k + 1]], vertex[first[k] : first[k + 1]]
+        shared = ~mine
+        # Its own vertices are numbered in their order, those of others left out.
+        before = np.zeros(seam.count + 1, np.int64)
+        before[seam.numbers[shared] + 1] = 1
+        rank = seam.numbers - np.cumsum(before)[seam.numbers]
+        known[at[mine]] = total + rank[mine]
+        result.append((total, np.where(shared, known[at], -1)))
+        total += seam.count - int(shared.sum())
+    return result, total
+
+
+def _check(places: Points, edges: Ints) -> None:
+    n = len(places)
+    keys, there, count = np.unique(edges[:, 0] * n + edges[:, 1], return_index=True, return_counts=True)
+    back = np.isin(edges[there, 1] * n + edges[there, 0], keys)
+    wrong = ~back | (count > 1)
+    if wrong.any():
+        at = places[edges[there][wrong]].mean(axis=1)[0]
+        raise MeshError(
+            f"seams: {int(wrong.sum())} edges do not fit, the first at ({at.real:.2f}, {at.imag:.2f}) px; please report this image"
+        )
+
+
+def global_numbers(count: int, numbers: Ints, first: int, shared: Ints) -> Ints:
+    """Return the number in the whole mesh of each vertex (count,) of a piece; see `numbered_vertices`."""
+    own = np.ones(count, bool)
+    own[numbers[shared >= 0]] = False
+    result = np.cumsum(own) - 1 + first
+    result[numbers[shared >= 0]] = shared[shared >= 0]
+    return result

@@ -1,0 +1,248 @@
+"""mesh_tiles: an image larger than memory -> a mesh in parts, block by block, on one process or a Dask cluster.
+
+    survey    what holds for the whole: level, default edge length, a hash of the pixels          survey
+    mesh      each block in its window, fitted to its neighbours', colour by colour               blocks, merging
+    check     every seam edge has its partner; numbers of vertices                                numbering
+    save      parts, one after the other                                                          outputs
+
+Pieces are kept beside the output while the work is under way. A second run goes on where the first ended.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from img2tri.arrays import as_rows
+from img2tri.errors import FileError, Img2triError, integer
+from img2tri.options.table import plain
+from img2tri.tiles.blocks import mesh_block
+from img2tri.tiles.numbering import Seam, global_numbers, numbered_vertices
+from img2tri.tiles.outputs import FORMATS, Part, save_parts
+from img2tri.tiles.pieces import Piece, join_pieces
+from img2tri.tiles.plans import Cell, Plan, colour
+from img2tri.tiles.sources import open_source
+from img2tri.tiles.storage import load_piece, write
+from img2tri.tiles.survey import decided, fingerprint, first_plan, look
+from img2tri.triangles.angles import smallest_angles
+
+TilesProgress = Callable[[str, float], object]
+
+
+@dataclass(frozen=True)
+class TiledMesh:
+    """A mesh in parts on disk.
+
+    Attributes
+    ----------
+    path
+        Where it is.
+    n_vertices, n_triangles, n_parts
+        Counts; a vertex on a seam counts once.
+    report
+        What is known of the whole, as plain data: options, counts, the worst angle, areas, the farthest edge from the outlines, seams.
+    """
+
+    path: Path
+    n_vertices: int
+    n_triangles: int
+    n_parts: int
+    report: dict[str, Any]
+
+
+def mesh_tiles(
+    source: Any,
+    out: str | os.PathLike[str],
+    *,
+    tile: int = 2048,
+    client: Any = None,
+    progress: TilesProgress | None = None,
+    **options: Any,
+) -> TiledMesh:
+    """Mesh an image that is larger than memory, in parts.
+
+    Memory follows the block, 2048 px, not the image. The mesh is the same, bit for bit, whatever `tile`, the number of workers and the
+    order of their work; it is another one than that of `mesh_image` near the borders of blocks, and as good.
+
+    Parameters
+    ----------
+    source
+        A path (.zarr and OME-Zarr, .npy, .h5, tiled .tif), or an array with ``shape``, ``dtype`` and slicing: `numpy.memmap`, zarr, h5py,
+        dask, xarray. A mask, gray values or labels, (h, w).
+    out
+        Where to write: ``mesh.zarr``, ``mesh.pvtu`` or ``mesh.vtkhdf``.
+    tile
+        About how many px of the image a part covers either way; whole blocks.
+    client
+        Of a Dask cluster, ``distributed.Client``, whose workers can read `source` and write beside `out`. None: this process does it all.
+    progress
+        What is called with the name of a stage and the fraction done, and ends the work if it raises.
+    **options
+        Those of `mesh_image`, but for recipe, periodic, interior, smoothing, crop, min_area and largest.
+
+    Returns
+    -------
+    TiledMesh
+
+    Raises
+    ------
+    FileError, ImageError, ParameterError, MeshError
+        As `mesh_image`; errors name the rows and columns. What is done stays, and the next run goes on from there.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> disc = np.hypot(*np.mgrid[-20:20, -20:20] + 0.5) < 15
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     made = mesh_tiles(disc, Path(folder) / "disc.zarr", edge_length=4)
+    >>> made.n_parts, made.report["smallest_angle"] >= 30
+    (1, True)
+    """
+    target, tile = Path(out), integer("tile", tile, least=1)
+    if target.suffix.lower() not in FORMATS:
+        raise FileError(f"{target}: expected a name that ends in {', '.join(FORMATS)}, found {target.suffix or 'none'!r}")
+    if not target.parent.is_dir():
+        raise FileError(f"{target}: expected an existing folder, found none at {target.parent}; make it first")
+    tell = progress or (lambda *_: None)
+    image = open_source(source)
+    plan = first_plan(image, options)
+
+    tell("survey", 0.0)
+    cells = list(plan.cells())
+    found = dict(_done(client, "survey", look, cells, (image, plan), lambda share: tell("survey", 0.1 * share)))
+    in_order = [found[cell] for cell in cells]
+    plan = decided(plan, image, in_order)
+    folder = _workplace(target, fingerprint(plan, in_order))
+
+    facts: dict[Cell, dict[str, Any]] = {}
+    cells = list(plan.cells())
+    for one in range(4):
+        those = [cell for cell in cells if colour(cell) == one]
+        done = len(facts)
+
+        def share(part: float, before: int = done, now: int = len(those)) -> None:
+            tell("mesh", 0.1 + 0.8 * (before + part * now) / len(cells))
+
+        facts.update(_done(client, "mesh", _block, those, (image, plan, folder), share))
+
+    tell("seams", 0.9)
+    seams = []
+    for cell in cells:
+        piece = load_piece(folder, plan, cell)[0]
+        numbers, edges = np.unique(piece.seam, return_inverse=True)
+        seams.append(Seam(len(piece.vertices), numbers, piece.vertices[numbers], edges.reshape(-1, 2)))
+    numbers_of, total = numbered_vertices(seams)
+
+    tell("save", 0.95)
+    report: dict[str, Any] = {
+        "options": plain(plan.options), "level": plan.level, "source": image.name, "shape": plan.frame.shape, "block": plan.block,
+        "n_vertices": total, "n_triangles": 0, "seam_edges": sum(len(seam.edges) for seam in seams) // 2, "smallest_angle": 180.0,
+        "narrow": 0, "distance": max(f["distance"] for f in facts.values()) * plan.frame.pixel,
+        "replaced": sum(f["replaced"] for f in facts.values()), "areas": {},
+    }  # fmt: skip
+    count = 0
+
+    def parts() -> Iterator[Part]:
+        nonlocal count
+        for name, some in _tiles(plan, tile):
+            pieces, numbers = [], []
+            for cell in some:
+                k = cells.index(cell)
+                pieces.append(load_piece(folder, plan, cell)[0])
+                numbers.append(global_numbers(seams[k].count, seams[k].numbers, *numbers_of[k]))
+            count += 1
+            yield _part(name, pieces, [np.asarray(n) for n in numbers], plan, report)
+
+    save_parts(target, parts(), report)
+    shutil.rmtree(folder)
+    tell("done", 1.0)
+    return TiledMesh(target, total, report["n_triangles"], count, report)
+
+
+def _block(image: Any, plan: Plan, folder: Path, cell: Cell) -> dict[str, Any]:
+    return mesh_block(plan, image, folder, cell)
+
+
+def _done(
+    client: Any,
+    name: str,
+    function: Callable[..., Any],
+    cells: list[Cell],
+    shared: tuple[Any, ...],
+    share: Callable[[float], object],
+) -> Iterator[tuple[Cell, Any]]:
+    """Run a function for each block, here or on a cluster; yield what it returns as it comes."""
+    if client is None:
+        for k, cell in enumerate(cells):
+            share(k / len(cells))
+            yield cell, function(*shared, cell)
+        return
+    from distributed import as_completed
+
+    kept = client.scatter(shared, broadcast=True, hash=False)
+    futures = {client.submit(_call, function, kept, cell, key=f"{name}-{cell[0]}-{cell[1]}-{id(kept)}", pure=False): cell for cell in cells}
+    try:
+        for k, future in enumerate(as_completed(futures)):
+            share(k / len(cells))
+            try:
+                yield futures[future], future.result()
+            except Img2triError:
+                raise
+            except Exception as problem:  # a worker that is lost again and again, or a cluster that closes
+                i, j = futures[future]
+                raise FileError(f"block in row {i}, column {j}: {type(problem).__name__}: {problem}; what is done stays") from problem
+    finally:
+        client.cancel(list(futures))
+
+
+def _call(function: Callable[..., Any], shared: tuple[Any, ...], cell: Cell) -> Any:
+    return function(*shared, cell)
+
+
+def _workplace(target: Path, hashed: str) -> Path:
+    """Make the folder for pieces; pieces of other options, pixels or versions go."""
+    folder = target.with_name(f".{target.name}.work")
+    note = folder / "made-from.json"
+    if folder.exists() and not (note.exists() and json.loads(note.read_text())["sha256"] == hashed):
+        shutil.rmtree(folder)
+    try:
+        folder.mkdir(exist_ok=True)
+    except OSError as problem:
+        raise FileError(f"{folder}: cannot be made: {problem.strerror}") from problem
+    write(note, json.dumps({"sha256": hashed}).encode())
+    return folder
+
+
+def _tiles(plan: Plan, tile: int) -> Iterator[tuple[str, list[Cell]]]:
+    """Blocks by tile, with the name of each."""
+    side = max(1, round(tile / plan.block))
+    rows, columns = plan.grid
+    for i in range(0, rows, side):
+        for j in range(0, columns, side):
+            inside = [(a, b) for a in range(i, min(rows, i + side)) for b in range(j, min(columns, j + side))]
+            yield f"{i // side}-{j // side}", inside
+
+
+def _part(name: str, pieces: list[Piece], numbers: list[Any], plan: Plan, report: dict[str, Any]) -> Part:
+    """Join the blocks of a tile, and add what is known of it to the report."""
+    piece = join_pieces(pieces)
+    number = np.zeros(len(piece.vertices), np.int64)
+    for one, its in zip(pieces, numbers, strict=True):
+        number[np.searchsorted(piece.vertices, one.vertices)] = its
+    a, b, c = piece.vertices[piece.triangles].T
+    area = ((b - a).conj() * (c - a)).imag / 2 * plan.frame.pixel**2
+    angles = smallest_angles(piece.vertices, piece.triangles)
+    report["n_triangles"] += len(piece.triangles)
+    report["smallest_angle"] = min(report["smallest_angle"], float(angles.min(initial=180.0)))
+    report["narrow"] += int((angles < plan.options["min_angle"] - 1e-9).sum())
+    labels, which = np.unique(piece.regions, return_inverse=True)
+    for label, found in zip(labels.tolist(), np.bincount(which, area, len(labels)).tolist(), strict=True):
+        report["areas"][label] = report["areas"].get(label, 0.0) + found
+    return Part(name, plan.frame.world(as_rows(piece.vertices)), piece.triangles, piece.regions, number)

@@ -1,0 +1,178 @@
+"""An image by tiles: sound and faithful across seams, the same bits whatever the tiles, going on after a stop."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import oracles
+import pytest
+from scipy import ndimage
+from specimens import MASKS, polycrystal
+
+from img2tri import FileError, ImageError, ParameterError, mesh_image, mesh_tiles
+from img2tri.certificate.report import certify
+from img2tri.tiles import blocks, plans
+from img2tri.tiles.outputs import load_tiles
+
+
+def blobs(n=400, sigma=8.0, seed=0):
+    return ndimage.gaussian_filter(np.random.default_rng(seed).standard_normal((n, n)), sigma) > 0
+
+
+@pytest.fixture(autouse=True)
+def small(monkeypatch):
+    """Blocks of 128 px, so that small images have seams; margins may overlap what is one block away, but for edges of 4 px do not."""
+    monkeypatch.setattr(plans, "BLOCK_SIDE", 128)
+
+
+def judged(image, folder, **options):
+    """Mesh by tiles, check the whole by the oracles and by the certificate of the image in memory, and return it."""
+    made = mesh_tiles(image, Path(folder) / "mesh.zarr", **options)
+    vertices, triangles, regions = load_tiles(made.path)
+    oracles.check_valid(vertices, triangles)
+    in_memory = mesh_image(image, **options)
+    report = certify(vertices, triangles, regions, in_memory.frame, in_memory.origin)
+    assert report.warnings == [], report.warnings
+    assert made.n_vertices == len(vertices)
+    assert made.n_triangles == len(triangles)
+    assert made.report["smallest_angle"] >= 30
+    assert made.report["distance"] <= 0.5 * (1 + 1e-6)
+    return made, (vertices, triangles, regions)
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_a_mask_across_many_seams_keeps_all_promises(seed, tmp_path):
+    made, _ = judged(blobs(300, seed=seed), tmp_path, edge_length=4.0)
+    assert made.report["seam_edges"] > 100
+
+
+def test_a_label_map_across_seams_keeps_all_promises(tmp_path):
+    judged(np.kron(polycrystal(64, 40), np.ones((4, 4), int)), tmp_path, edge_length=4.0, labels=True, background=None)
+
+
+def test_gray_values_place_the_outlines_across_seams(tmp_path):
+    y, x = np.mgrid[:260, :260] + 0.5
+    gray = np.clip(128 + 20 * (90 - np.hypot(x - 130, y - 130)), 0, 255).astype(np.uint8)
+    made, (vertices, triangles, _) = judged(gray, tmp_path, edge_length=4.0, threshold=127)
+    assert abs(oracles.areas(vertices, triangles).sum() / (np.pi * 90**2) - 1) < 1e-3
+    made, _ = judged(gray, tmp_path, edge_length=4.0)
+    assert made.report["level"] == mesh_image(gray, edge_length=4.0).report.settings["threshold"]
+
+
+@pytest.mark.parametrize("name", ["hole of a pixel", "touching corners"])
+def test_seams_may_cut_a_specimen_at_any_place(name, monkeypatch, tmp_path):
+    monkeypatch.setattr(plans, "BLOCK_SIDE", 64)
+    specimen = MASKS[name]
+    h, w = specimen.shape
+    for offset in range(max(h, w) + 1):
+        image = np.zeros((96, 96), int)
+        image[64 - offset : 64 - offset + h, 64 - offset : 64 - offset + w] = specimen
+        judged(image > 0, tmp_path, edge_length=2.0)
+
+
+def test_the_bits_do_not_depend_on_the_tile_size(tmp_path):
+    mask, found = blobs(), []
+    for tile in (1, 256, 10_000):
+        made = mesh_tiles(mask, tmp_path / f"{tile}.zarr", tile=tile, edge_length=4.0)
+        vertices, triangles, _ = load_tiles(made.path)
+        assert made.n_parts == {1: 16, 256: 4, 10_000: 1}[tile]
+        corners = vertices[triangles].reshape(-1, 6)
+        found.append(corners[np.lexsort(corners.T)].tobytes())
+    assert found[0] == found[1] == found[2]
+
+
+def test_a_second_run_goes_on_where_the_first_was_stopped(tmp_path, monkeypatch):
+    mask = blobs(300)
+    mesh_tiles(mask, tmp_path / "whole.zarr", edge_length=4.0)
+
+    def stop(_, share):
+        if share > 0.5:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        mesh_tiles(mask, tmp_path / "mesh.zarr", edge_length=4.0, progress=stop)
+    made = len(list((tmp_path / ".mesh.zarr.work").glob("piece-*")))
+    assert 0 < made < 9
+    calls, fitting = [], blocks._fitting
+    monkeypatch.setattr(blocks, "_fitting", lambda *given: (calls.append(given[-1]), fitting(*given))[1])
+    mesh_tiles(mask, tmp_path / "mesh.zarr", edge_length=4.0)
+    assert len(calls) == 9 - made
+    one, other = load_tiles(tmp_path / "whole.zarr"), load_tiles(tmp_path / "mesh.zarr")
+    assert all(a.tobytes() == b.tobytes() for a, b in zip(one, other, strict=True))
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["mesh.zarr", "whole.zarr"]
+
+
+def test_other_pixels_or_options_do_not_go_on_with_old_pieces(tmp_path):
+    def stop(_, share):
+        if share > 0.5:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        mesh_tiles(blobs(300), tmp_path / "mesh.zarr", edge_length=4.0, progress=stop)
+    judged(blobs(300, seed=5), tmp_path, edge_length=4.0)
+
+
+@pytest.mark.parametrize("suffix", [".pvtu", ".vtkhdf"])
+def test_pyvista_reads_the_whole_and_each_part(suffix, tmp_path):
+    import pyvista
+
+    mask = blobs(160)
+    made = mesh_tiles(mask, tmp_path / f"mesh{suffix}", tile=128, edge_length=4.0, spacing=0.5)
+    grid = pyvista.read(made.path)
+    assert grid.n_cells == made.n_triangles
+    assert len(np.unique(grid.point_data["number"])) == made.n_vertices == grid.clean(tolerance=0).n_points
+    assert set(grid.cell_data["region"]) == {1}
+    assert np.isclose(grid.compute_cell_sizes()["Area"].sum(), made.report["areas"][1])
+    if suffix == ".pvtu":
+        parts = [pyvista.read(path) for path in sorted((tmp_path / "mesh").glob("*.vtu"))]
+        assert sum(part.n_cells for part in parts) == made.n_triangles
+
+
+class Broken:
+    """An image with a chunk that cannot be read."""
+
+    shape, dtype = (300, 300), np.dtype(bool)
+
+    def __getitem__(self, window):
+        rows, columns = window
+        if rows.start <= 200 < rows.stop and columns.start <= 150 < columns.stop:
+            raise OSError("bad block on disk")
+        return np.ones((rows.stop - rows.start, columns.stop - columns.start), bool)
+
+
+def test_errors_name_what_is_wrong(tmp_path):
+    with pytest.raises(FileError, match="bad block on disk"):
+        mesh_tiles(Broken(), tmp_path / "mesh.zarr")
+    with pytest.raises(ImageError, match="found shape"):
+        mesh_tiles(np.zeros((3, 4, 5)), tmp_path / "mesh.zarr")
+    with pytest.raises(ImageError, match="expected pixels to mesh"):
+        mesh_tiles(np.zeros((30, 40), bool), tmp_path / "mesh.zarr")
+    with pytest.raises(ParameterError, match="periodic: expected to be left out"):
+        mesh_tiles(np.ones((30, 40), bool), tmp_path / "mesh.zarr", periodic="x")
+    with pytest.raises(FileError, match="expected a name that ends in"):
+        mesh_tiles(np.ones((30, 40), bool), tmp_path / "mesh.stl")
+    with pytest.raises(FileError, match="expected an existing folder"):
+        mesh_tiles(np.ones((30, 40), bool), tmp_path / "none" / "mesh.zarr")
+
+
+def test_every_kind_of_source_gives_the_same_mesh(tmp_path):
+    import dask.array
+    import h5py
+    import tifffile
+    import xarray
+    import zarr
+
+    mask = blobs(140, 16.0).astype(np.uint8)
+    np.save(tmp_path / "mask.npy", mask)
+    zarr.save(tmp_path / "mask.zarr", mask)
+    with h5py.File(tmp_path / "mask.h5", "w") as file:
+        file["mask"] = mask
+    tifffile.imwrite(tmp_path / "mask.tif", mask, tile=(64, 64))
+    sources = [mask, *(tmp_path / f"mask{suffix}" for suffix in (".npy", ".zarr", ".h5", ".tif"))]
+    sources += [dask.array.from_array(mask, chunks=50), xarray.DataArray(mask)]
+    found = set()
+    for source in sources:
+        made = mesh_tiles(source, tmp_path / "mesh.zarr", edge_length=4.0)
+        found.add(b"".join(array.tobytes() for array in load_tiles(made.path)))
+    assert len(found) == 1
