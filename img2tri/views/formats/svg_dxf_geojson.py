@@ -30,10 +30,12 @@ from img2tri.arrays import Floats, unique_edges
 from img2tri.errors import MeshError
 from img2tri.views.figures.colours import palette
 from img2tri.views.formats.atomic_write import known_suffix, store, writable
+from img2tri.views.formats.solvers.plain_text import ascii_letters
 from img2tri.views.objects.body_per_region import unique_names
 from img2tri.views.objects.flat_or_extruded import plane_mesh
 
 _DXF_COLOURS = (5, 1, 3, 6, 4, 30)  # DXF numbers its colours: blue, red, green, magenta, cyan, orange
+_DXF_UNITS = {"in": 1, "ft": 2, "mm": 4, "cm": 5, "m": 6, "km": 7, "nm": 12, "um": 13}  # 0 is none
 _SVG_UNITS = {"mm", "cm", "in"}
 
 
@@ -195,9 +197,11 @@ def _dxf(drawing: _Drawing) -> str:
     layers = _layers(drawing.regions)
     left, bottom, right, top = drawing.bounds
     # Comments, as long as lines may be.
-    notes = [f"{name}: {text}".encode("unicode_escape").decode() for name, text in drawing.texts.items()]
+    texts = drawing.texts | {f"layer {layers[r.label]}": r.name for r in drawing.regions if layers[r.label] != r.name}
+    notes = [f"{name}: {text}".encode("unicode_escape").decode() for name, text in texts.items()]
     pairs: list[tuple[int, object]] = [(999, note[i : i + 250]) for note in notes for i in range(0, len(note), 250)]
     pairs += [(0, "SECTION"), (2, "HEADER"), (9, "$ACADVER"), (1, "AC1009")]
+    pairs += [(9, "$INSUNITS"), (70, _DXF_UNITS.get(drawing.texts.get("units", ""), 0))]
     pairs += [(9, "$EXTMIN"), (10, left), (20, bottom), (30, 0.0), (9, "$EXTMAX"), (10, right), (20, top), (30, 0.0), (0, "ENDSEC")]
     pairs += [(0, "SECTION"), (2, "TABLES"), (0, "TABLE"), (2, "LTYPE"), (70, 1)]
     pairs += [(0, "LTYPE"), (2, "CONTINUOUS"), (70, 0), (3, "Solid line"), (72, 65), (73, 0), (40, 0.0), (0, "ENDTAB")]
@@ -226,7 +230,7 @@ def _polyline(layer: str, ring: Floats) -> Iterator[tuple[int, object]]:
 
 def _layers(regions: list[_Region]) -> dict[int, str]:
     """Name the layers by what release 12 allows: 31 letters, digits, - and _, large and small letters being alike."""
-    allowed = {r.label: "".join(c if (c.isascii() and c.isalnum()) or c in "-_" else "_" for c in r.name)[:24] for r in regions}
+    allowed = {r.label: ascii_letters(r.name)[:24] or "region" for r in regions}
     lower = [name.lower() for name in [*allowed.values(), "mesh", "0"]]
     return {label: name if lower.count(name.lower()) == 1 else f"{name}_{label}"[-31:] for label, name in allowed.items()}
 

@@ -98,3 +98,8 @@ def parts_of_fields(fields: Mapping[str, NDArray[Any]], regions: Ints, texts: Ma
     names = {int(values.ravel()[0]): name for name, values in whole.items() if values.size == 1 and int(values.ravel()[0]) in there}
     names |= {label: name for label, name in given.items() if label in there}
     return names, {name: values.astype(np.int64) for name, values in whole.items() if values.ndim == 2 and values.shape[1] > 1}
+
+
+def unescaped(text: str) -> str:
+    """Turn what was written in ASCII back into the letters it stands for."""
+    return re.sub(r"\\x[0-9a-f]{2}|\\u[0-9a-f]{4}|\\U[0-9a-f]{8}", lambda code: chr(int(code[0][2:], 16)), text)

@@ -14,7 +14,7 @@ import numpy as np
 
 from img2tri.arrays import Ints
 from img2tri.errors import MeshError
-from img2tri.views.formats.readers.found import Found, commented
+from img2tri.views.formats.readers.found import Found, commented, unescaped
 from img2tri.views.objects.solver_cells import CELL_SIDES, FLAT_KINDS, SOLID_KINDS
 
 # Families of elements of Abaqus; behind their letters stands the number of nodes, then at most letters for variants.
@@ -56,7 +56,7 @@ def parse_inp(data: bytes) -> Found:
     """
     text = data.decode().replace("\r\n", "\n")
     said = commented(text, "** ")
-    called = {plain: _unescaped(line.removeprefix("named ")) for plain, line in said.items() if line.startswith("named ")}
+    called = {plain: unescaped(line.removeprefix("named ")) for plain, line in said.items() if line.startswith("named ")}
     blocks = list(_keyword_blocks(text))
     rows = [[*map(float, line.strip(" ,").split(",")), 0.0][:4] for key, _, lines in blocks if key == "NODE" for line in lines]
     nodes = np.array(rows).reshape(-1, 4)
@@ -96,11 +96,6 @@ def _keyword_blocks(text: str) -> Iterator[tuple[str, dict[str, str], list[str]]
             keyword, data = line[1:], []
         elif line.strip() and not line.startswith("**"):
             data.append(line)
-
-
-def _unescaped(text: str) -> str:
-    """Turn what was written in ASCII back into the letters it stands for."""
-    return re.sub(r"\\x[0-9a-f]{2}|\\u[0-9a-f]{4}|\\U[0-9a-f]{8}", lambda code: chr(int(code[0][2:], 16)), text)
 
 
 def _whole_numbers(lines: list[str]) -> list[int]:

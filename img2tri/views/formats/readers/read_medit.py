@@ -8,7 +8,7 @@ import numpy as np
 
 from img2tri.arrays import Ints
 from img2tri.errors import MeshError
-from img2tri.views.formats.readers.found import Found, commented, labels_of
+from img2tri.views.formats.readers.found import Found, commented, labels_of, unescaped
 from img2tri.views.objects.sets.named_sets import pieces_by_name
 
 _SIZES = {"Vertices": 0, "Edges": 2, "Triangles": 3, "Tetrahedra": 4}
@@ -48,7 +48,7 @@ def parse_medit(data: bytes) -> Found:
     nodes = cells[:, :-1].astype(np.int64) - 1
     if nodes.min() < 0 or nodes.max() >= len(points):
         raise ValueError("it has cells with nodes that are not there")
-    called = {int(number): name.encode().decode("unicode_escape") for number, name in re.findall(r"^# (\d+) (.*)$", text, re.MULTILINE)}
+    called = {int(number): unescaped(name) for number, name in re.findall(r"^# (\d+) (.*)$", text, re.MULTILINE)}
     labels, names = labels_of(cells[:, -1].astype(np.int64), called, texts)
     rows = parts.get("Triangles" if solid else "Edges", np.zeros((0, 3))).astype(np.int64)
     return Found(points, nodes, "tetra" if solid else "triangle", labels, names, _facets(rows, called), texts=texts)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from img2tri.arrays import Floats, Ints
 from img2tri.errors import MeshError
-from img2tri.views.formats.readers.found import Found, commented, labels_of
+from img2tri.views.formats.readers.found import Found, commented, labels_of, unescaped
 from img2tri.views.formats.solvers import bdf, msh
 
 # Number of nodes of each of Gmsh's types of element.
@@ -86,8 +86,9 @@ def _data(sections: list[str], numbers: Ints) -> dict[str, Floats]:
         whole = [int(line) for line in lines[at + 1 : at + 1 + int(lines[at])]]
         rows = np.array(" ".join(lines[at + 1 + len(whole) :]).split(), np.float64).reshape(whole[2], 1 + whole[1])
         rows = rows[np.argsort(rows[:, 0], kind="stable")]
-        if np.array_equal(rows[:, 0], numbers):
-            found[name] = rows
+        mine = rows[np.isin(rows[:, 0], numbers)]
+        if np.array_equal(mine[:, 0], numbers):
+            found[name] = mine
     return found
 
 
@@ -121,8 +122,8 @@ def parse_bdf(data: bytes) -> Found:
     numbers = np.array(sorted(places))
     place = np.full(int(numbers.max(initial=0)) + 1, -1)
     place[numbers] = np.arange(len(numbers))
-    called = {int(number): name for number, name in re.findall(r'^\$HMNAME COMP\s+(\d+)\s*"(.*?)"', text, re.MULTILINE)}
-    known = {int(number): name for number, name in re.findall(r'^\$HMSET\s+(\d+)\s+1\s*"(.*?)"', text, re.MULTILINE)}
+    called = {int(number): unescaped(name) for number, name in re.findall(r'^\$HMNAME COMP\s+(\d+)\s*"(.*?)"', text, re.MULTILINE)}
+    known = {int(number): unescaped(name) for number, name in re.findall(r'^\$HMSET\s+(\d+)\s+1\s*"(.*?)"', text, re.MULTILINE)}
     nodes = {known[number]: place[members][:, None] for number, members in sets.items() if number in known}
     points = np.array([places[number] for number in numbers.tolist()])
     return _assembled(points, table, place, kind, bdf.NASTRAN_ORDERS, called, nodes, commented(text, "$ "))

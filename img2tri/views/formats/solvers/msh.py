@@ -73,10 +73,11 @@ def msh(made: Cells, *, version: str = "4.1") -> dict[str, bytes]:
     lines += ["$Comments", MARK, *comment_lines(made.texts | label_table(made), ""), "$EndComments"]
     lines += ["$PhysicalNames", str(len(names)), *(f'{d} {number} "{_unquoted(name)}"' for d, number, name in names), "$EndPhysicalNames\n"]
     body = _write_version_4(made.points, entities) if version == "4.1" else _write_version_2(made.points, entities)
-    cells = np.concatenate([np.arange(len(made.cells))[:0], *members.values()])
-    facets = sum(len(e.elements) for e in entities if e.dimension < inside)
-    data = [_data("ElementData", name, values[cells], facets) for name, values in made.cell_data.items()]
-    data += [_data("NodeData", name, values, 0) for name, values in made.point_data.items()]
+    # Some readers want values of all elements: facets have those of their cells.
+    split = set(made.part_of.values())
+    cells = np.concatenate([*(rows[:, 0] for name, rows in made.sides.items() if name not in split), *members.values()])
+    data = [_data("ElementData", name, values[cells]) for name, values in made.cell_data.items()]
+    data += [_data("NodeData", name, values) for name, values in made.point_data.items()]
     return {"": "".join(["\n".join(lines), *body, _periodic(made), *data]).encode()}
 
 
@@ -142,14 +143,14 @@ def _periodic(made: Cells) -> str:
     return f"$Periodic\n{len(pairs)}\n{links}$EndPeriodic\n"
 
 
-def _data(section: str, name: str, values: NDArray[Any], offset: int) -> str:
-    """Write values of elements, numbered after the first `offset`, or nodes: texts, a time, then step, components and count."""
+def _data(section: str, name: str, values: NDArray[Any]) -> str:
+    """Write values of all elements, or nodes: texts, a time, then step, components and count; and a line for each."""
     array = values.reshape(len(values), -1).astype(np.float64)
     width = next((c for c in (1, 3, 9) if c >= array.shape[1]), 0)
     if not width:
         raise ParameterError(f"{name}: expected at most 9 values each for .msh, found {array.shape[1]}; take it apart")
     array = np.pad(array, ((0, 0), (0, width - array.shape[1])))
-    numbers, texts = whole_rows(np.arange(offset + 1, offset + 1 + len(array))[:, None]).split("\n"), real_rows(array).split("\n")
+    numbers, texts = whole_rows(np.arange(1, len(array) + 1)[:, None]).split("\n"), real_rows(array).split("\n")
     lines = "".join(f"{number} {text}\n" for number, text in zip(numbers[:-1], texts[:-1], strict=True))
     return f'${section}\n1\n"{_unquoted(name)}"\n1\n0.0\n3\n0\n{width}\n{len(array)}\n{lines}$End{section}\n'
 

@@ -48,7 +48,7 @@ def test_pynastran_finds_elements_sets_and_names(tmp_path, monkeypatch, kind):
     reader = pytest.importorskip("pyNastran.bdf.bdf", reason="pyNastran is not installed")
     mesh = made(kind)
     (tmp_path / "a.bdf").write_bytes(bdf(mesh)[""])
-    model = reader.parse_bdf(str(tmp_path / "a.bdf"), xref=False, validate=False, debug=None)
+    model = reader.read_bdf(str(tmp_path / "a.bdf"), xref=False, validate=False, debug=None)
     assert len(model.nodes) == len(mesh.points)
     places = np.array([model.nodes[i + 1].xyz for i in range(len(mesh.points))])
     assert places == pytest.approx(mesh.points, rel=1e-9)
