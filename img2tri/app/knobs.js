@@ -204,7 +204,9 @@ class Knobs {
 
   async certify(number) {
     try {
-      const { data } = await this.ask("certificate"), { pieces, places } = JSON.parse(new TextDecoder().decode(data));
+      const { data } = await this.ask("certificate");
+      if (!data.byteLength) return;  // overtaken by a wish
+      const { pieces, places } = JSON.parse(new TextDecoder().decode(data));
       if (number !== this.shown || this.flying) return;
       this.viewer.mesh.view.places = places;
       this.page.put(pieces);

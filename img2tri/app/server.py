@@ -12,6 +12,7 @@ from __future__ import annotations
 import json
 import secrets
 import socket
+import threading
 from collections.abc import Awaitable, Callable, Mapping
 from typing import TYPE_CHECKING, Any
 from urllib.parse import parse_qs
@@ -78,6 +79,7 @@ def serve(session: Session, *, port: int = 0, ready: Callable[[str], None] = lam
             timeout_graceful_shutdown=1, timeout_keep_alive=30,
         )  # fmt: skip
         ready(f"http://{_HOST}:{number}/?token={token}")
+        threading.Thread(target=session.warm_up, daemon=True).start()
         uvicorn.Server(config).run(sockets=[listening])
     finally:
         listening.close()

@@ -12,8 +12,11 @@ import time
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from img2tri.app import downloads, image_facts, spelling
 from img2tri.app.knobs import knobs, values
+from img2tri.certificate.report import certify
 from img2tri.errors import Img2triError, MeshError, ParameterError
 from img2tri.mesh import TriangleMesh
 from img2tri.pipeline import mesh_image
@@ -78,6 +81,11 @@ class Session:
         source = source_of(io.BytesIO(data), max_pixels=self.max_pixels)
         self.load(source, name.replace("\\", "/").rpartition("/")[2][-200:] or "image")
 
+    def warm_up(self) -> None:
+        """Load what the first mesh needs, which takes longer than the mesh, while nobody waits."""
+        tiny = np.pad(np.ones((6, 6), bool), 2)
+        Session(tiny).wish({}, number=1)
+
     def facts(self) -> bytes:
         """Return what the knobs start from, the picture and its codes, packed."""
         head: dict[str, Any] = {"knobs": knobs(), "formats": list(downloads.ALL_KINDS), "solid": list(downloads.WITH_HEIGHT), "image": None}
@@ -139,8 +147,18 @@ class Session:
         return packed_mesh(mesh.vertices, mesh.triangles, mesh.regions, **metrics, **about, **head)
 
     def certificate(self) -> dict[str, Any]:
-        """Return the certificate of the present mesh: pieces of HTML by their places, and the places to be looked at."""
-        mesh = self._present()
+        """Return the certificate of the present mesh: pieces of HTML by their places, and the places to be looked at.
+
+        Raises
+        ------
+        OvertakenError
+            If a newer wish comes meanwhile.
+        """
+        mesh, number = self._present(), self._newest
+        if mesh.origin is not None and "report" not in vars(mesh):
+            # As `mesh.report` does when it is first asked for, but so that the next wish can end it.
+            arrays = (mesh.vertices, mesh.triangles, mesh.regions)
+            vars(mesh)["report"] = certify(*arrays, mesh.frame, mesh.origin, progress=lambda *_: self._still_wanted(number))
         facts = html_tables.from_json(mesh.report.to_json())
         metrics: dict[str, Any] = measure(mesh.vertices, mesh.triangles, ["q", "min_angle"])
         frame = mesh.frame if self._picture is None else self._picture.frame

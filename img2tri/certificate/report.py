@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -124,7 +125,15 @@ class Report:
         return not self.warnings
 
 
-def certify(vertices: Floats, triangles: Ints, regions: Ints, frame: Frame, origin: Provenance) -> Report:
+def certify(
+    vertices: Floats,
+    triangles: Ints,
+    regions: Ints,
+    frame: Frame,
+    origin: Provenance,
+    *,
+    progress: Callable[[str, float], None] | None = None,
+) -> Report:
     """Judge a mesh by the image it was made from.
 
     Parameters
@@ -133,16 +142,23 @@ def certify(vertices: Floats, triangles: Ints, regions: Ints, frame: Frame, orig
         The mesh: (n, 2) float64 in world coordinates, (m, 3) int64, (m,) int64 labels of the image.
     frame, origin
         Where the image lies, and what the mesh is to be judged by.
+    progress
+        What is called with the name of what is measured next and the fraction done, and ends the work if it raises.
     """
+    tell = progress or (lambda *_: None)
+    tell("distances", 0.0)
     plane, outlines = (vertices - frame.corner) / frame.pixel, origin.outlines
     number, unknown = region_numbers(regions, outlines.labels)
     sides = EdgeSides.of(triangles)
     curves = SegmentSet(plane, sides.edges[sides.curves(regions)])
     distance, farthest = hausdorff(SegmentSet(outlines.points, outlines.segments[0]), curves)
+    tell("pixels", 0.3)
     wrong = wrong_pixels(plane, triangles, number, curves, origin)
+    tell("angles", 0.5)
     worst, angle = small_angles(vertices, triangles, origin.min_angle or 0.0)
     narrow = worst[angle < (origin.min_angle or 0.0) - 1e-9]
     places = vertices[triangles[np.append(narrow[:PLACES], worst[np.argmin(angle)])]].mean(axis=1)
+    tell("topology", 0.6)
     missing, extra = neighbours(number, sides, outlines)
     found = moments(plane, triangles, number, len(origin.areas))
     off = regions_off(found, curves, origin)

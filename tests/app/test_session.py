@@ -167,6 +167,26 @@ def test_the_certificate_is_that_of_the_mesh():
     assert {place["first"] for place in said["places"]} == {False}
 
 
+def test_a_wish_ends_the_certificate_of_the_mesh_before():
+    session = Session(DISC)
+    session.wish({}, number=1)
+    session._newest = 2  # a wish has come
+    assert session.certificate()["pieces"]["verdict"]  # asked for after it: of the mesh there is
+    session.wish({"edge_length": "5"}, number=3)
+    held = session._still_wanted
+
+    def overtaken(number):
+        session._newest = 4
+        held(number)
+
+    session._still_wanted = overtaken
+    with pytest.raises(OvertakenError):
+        session.certificate()
+    session._still_wanted = held
+    assert session.certificate()["pieces"]["verdict"]
+    assert session.mesh.report.to_json() == img2tri.mesh_image(DISC, edge_length=5.0).report.to_json()
+
+
 @pytest.mark.parametrize("kind", downloads.ALL_KINDS)
 def test_every_format_is_downloaded(kind, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

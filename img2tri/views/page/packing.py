@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -63,7 +64,7 @@ def packed_mesh(
         **placed(frame, unit),
         "box": [*xy.min(axis=0).tolist(), *xy.max(axis=0).tolist()],
         "edge": float(np.median(np.linalg.norm(xy[edges[:, 0]] - xy[edges[:, 1]], axis=1))),
-        "ramp": [f"#{shade((i + 0.5) / BARS)}" for i in range(BARS)],
+        "ramp": _ramp(),
         "regions": [
             {"label": label, "name": called[label], "colour": colour}
             for label, colour in zip(present.tolist(), colours(len(present)), strict=True)
@@ -108,6 +109,12 @@ def page_coordinates(points: Floats, frame: Frame) -> Floats:
 def colours(count: int) -> list[str]:
     """Return so many colours as a browser writes them."""
     return [f"#{red:02x}{green:02x}{blue:02x}" for red, green, blue in palette(count).tolist()]
+
+
+@cache
+def _ramp() -> list[str]:
+    """Return the colours of the bars of the histograms."""
+    return [f"#{shade((i + 0.5) / BARS)}" for i in range(BARS)]
 
 
 def _worst(min_angle: Floats) -> list[int]:
