@@ -9,6 +9,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from img2tri.options import spelling
 from img2tri.raster.reading import read
 from img2tri.triangles.tools.quality_summary import measure
 from img2tri.views.formats.atomic_write import store, writable
@@ -36,13 +37,21 @@ def save_page(mesh: Any, path: str | os.PathLike[str], image: Any) -> None:
     store(target, page_about(mesh, meshed_part(mesh, image)).encode())
 
 
-def page_about(mesh: Any, values: Any, *, title: str | None = None, command: str = "") -> str:
+def page_about(mesh: Any, values: Any, *, title: str | None = None, command: str | None = None) -> str:
     """Return a page about a mesh, over the `values` of its image; without an origin it has no certificate."""
     settings, report = (mesh.origin.settings, mesh.report.to_json()) if mesh.origin else ({}, "{}")
     about = {"frame": mesh.frame, "regions": mesh.regions, "names": mesh.names, "unit": settings.get("units") or "", "image": values}
+    if command is None:
+        command = "" if mesh.origin is None else _again(settings.get("source"), mesh.origin.options)
     named = Path(settings.get("source") or "mesh").name if title is None else title
     measured: dict[str, Any] = measure(mesh.vertices, mesh.triangles, ["q", "min_angle"])
     return page(mesh.vertices, mesh.triangles, **measured, **about, report=report, title=named, command=command)
+
+
+def _again(source: str | None, options: dict[str, Any]) -> str:
+    """Say how the mesh is made again: by a command if its image was a file, else in Python."""
+    array = source in (None, "array")
+    return spelling.python("image", options, literal=False) if array else spelling.command(str(source), options)
 
 
 def meshed_part(mesh: Any, image: Any) -> Any:

@@ -10,6 +10,7 @@ import oracles
 import pytest
 import shapely
 import specimens
+from PIL import Image
 
 from img2tri import FileError, MeshError, ParameterError, TriangleMesh, __version__, mesh_image
 from img2tri.types import Frame
@@ -499,3 +500,22 @@ def test_colour_by_changes_the_figure(grains, tmp_path):
 def test_a_figure_of_unknown_kind_is_refused(holed, tmp_path):
     with pytest.raises(FileError, match=r"expected a name that ends in \.pdf, \.png or \.svg"):
         holed.plot(None, tmp_path / "a.stl")
+
+
+def test_a_page_says_how_the_mesh_is_made_again(tmp_path):
+    image = np.zeros((30, 40), np.uint8)
+    image[5:25, 5:35] = 200
+    Image.fromarray(image).save(tmp_path / "a.png")
+    for source, words in [
+        (image, "mesh = img2tri.mesh_image(image, edge_length=5)"),
+        (tmp_path / "a.png", f"img2tri mesh {tmp_path}/a.png -o mesh.vtu --edge-length 5"),
+    ]:
+        mesh = mesh_image(source, edge_length=5)
+        mesh.save(tmp_path / "a.html", image=source)
+        text = (tmp_path / "a.html").read_text(encoding="utf-8")
+        assert f'<code id="command">{words}</code>' in text
+        assert 'id="picture"' in text
+    TriangleMesh(mesh.vertices, mesh.triangles, mesh.regions).save(tmp_path / "b.html")
+    assert "There is no image to judge this mesh by." in (tmp_path / "b.html").read_text(encoding="utf-8")
+    with pytest.raises(ParameterError, match="image: expected to be left out for .stl"):
+        mesh.save(tmp_path / "a.stl", image=image)

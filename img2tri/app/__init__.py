@@ -3,7 +3,6 @@
 session       An image and its mesh under changing options: wishes in, bytes for the viewer out. It knows nothing of who asks.
 image_facts   What the knobs start from: size, kind, histogram and regions of an image, and its pixels for the mask.
 knobs         The options as knobs, and texts typed into them -> values.
-spelling      Options that differ from their defaults -> the command line and the Python that make the same mesh.
 downloads     The mesh as the bytes of a file of any format.
 app_page      The viewer's page with the knobs beside it.
 server        The app: a page and its answers, on this machine only; fetching.js asks it.

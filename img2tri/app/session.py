@@ -14,11 +14,12 @@ from typing import Any
 
 import numpy as np
 
-from img2tri.app import downloads, image_facts, spelling
+from img2tri.app import downloads, image_facts
 from img2tri.app.knobs import knobs, values
 from img2tri.certificate.report import certify
 from img2tri.errors import Img2triError, MeshError, ParameterError
 from img2tri.mesh import TriangleMesh
+from img2tri.options import spelling
 from img2tri.pipeline import mesh_image
 from img2tri.raster.files.byte_sources import source_of
 from img2tri.raster.reading import read

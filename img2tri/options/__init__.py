@@ -3,6 +3,7 @@
     image_options   reading an image, finding its regions     mesh_options   outlines, edge lengths, triangles     paper_options
     option          the record of an entry, and the checks    typed          texts typed on the command line -> values
     table           the entries by name: checks, groups for the stages, plain data for reports
+    spelling        options that differ from their defaults -> the command line and the Python that make the same mesh
     describing      the signature and the Parameters section of functions that have these options
 
 An option is one entry in one of the groups, which gives it to the stage the group belongs to. The signature that editors and mypy see,

@@ -9,12 +9,13 @@ import pytest
 import specimens
 
 import img2tri
-from img2tri.app import downloads, knobs, spelling
+from img2tri.app import downloads, knobs
 from img2tri.app.app_page import own
 from img2tri.app.image_facts import describe
 from img2tri.app.session import OvertakenError, Session
 from img2tri.cli.arguments import parse
 from img2tri.errors import ImageError, MeshError, ParameterError
+from img2tri.options import spelling
 from img2tri.options.table import OPTIONS
 from img2tri.raster.reading import read
 

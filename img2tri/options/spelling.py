@@ -23,15 +23,15 @@ def different(options: Mapping[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in options.items() if is_field(value) or value != OPTIONS[name].default}
 
 
-def python(image: str, options: Mapping[str, Any]) -> str:
-    """Write the call of Python.
+def python(image: str, options: Mapping[str, Any], *, literal: bool = True) -> str:
+    """Write the call of Python, `image` being a path, or with ``literal=False`` the name of a variable.
 
     Examples
     --------
     >>> python("a.png", {"edge_length": 8.0, "labels": [1, 2], "invert": False})
     "mesh = img2tri.mesh_image('a.png', edge_length=8, labels=[1, 2])"
     """
-    given = [repr(image)] + [f"{name}={_python(value)}" for name, value in different(options).items()]
+    given = [repr(image) if literal else image] + [f"{name}={_python(value)}" for name, value in different(options).items()]
     return f"mesh = img2tri.mesh_image({', '.join(given)})"
 
 
@@ -60,7 +60,7 @@ def _words(name: str, value: Any) -> list[str]:
 
 
 def _typed(value: Any) -> str:
-    if isinstance(value, Mapping):
+    if isinstance(value, Mapping) and not is_field(value):
         return ",".join(f"{label}={_typed(entry)}" for label, entry in value.items())
     if isinstance(value, (list, tuple, range, set)):
         return ",".join(map(_typed, value))
@@ -68,7 +68,7 @@ def _typed(value: Any) -> str:
 
 
 def _python(value: Any) -> str:
-    if isinstance(value, Mapping):
+    if isinstance(value, Mapping) and not is_field(value):
         return "{" + ", ".join(f"{label}: {_python(entry)}" for label, entry in value.items()) + "}"
     if isinstance(value, (list, tuple)):
         return "[" + ", ".join(map(_python, value)) + "]"
@@ -80,5 +80,5 @@ def _number(value: float) -> str:
 
 
 def is_field(value: Any) -> bool:
-    """Tell whether a value is no plain data: an array, or a function."""
-    return callable(value) or getattr(value, "ndim", 0) > 0
+    """Tell whether a value is no plain data: an array or a function, or what a report keeps of one."""
+    return callable(value) or getattr(value, "ndim", 0) > 0 or (isinstance(value, Mapping) and "sha256" in value)
