@@ -192,7 +192,7 @@ class Knobs {
     if (typeof packed.edge_length === "number") this.known.edge_length = packed.edge_length;
     this.page.put({ tiles: packed.tiles });
     this.$("command").textContent = packed.command; this.$("python").textContent = packed.python;
-    const gone = packed.removed || {}, words = Object.entries(gone).filter(([, n]) => n).map(([what, n]) => `${n.toLocaleString("en")} ${what.replaceAll("_", " ")}`);
+    const gone = packed.removed || {}, words = Object.entries(gone).filter(([, n]) => typeof n === "number" && n > 0).map(([what, n]) => `${n.toLocaleString("en")} ${what.replaceAll("_", " ")}`);
     this.$("removed").textContent = words.length ? `removed: ${words.join(", ")}` : "nothing was removed";
     for (const row of this.$("part-list").children) row.querySelector(".swatch").style.background = packed.view.regions.find(region => region.label === +row.dataset.label)?.colour || "var(--faint)";
     this.show_options();
