@@ -6,7 +6,6 @@ import json
 import os
 from collections.abc import Mapping
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -156,10 +155,11 @@ class MeshExports:
         """
         from img2tri.mesh_pictures import save_page
         from img2tri.views.formats import svg_dxf_geojson as vectors
-        from img2tri.views.formats.save_load import save
+        from img2tri.views.formats.atomic_write import known_suffix
+        from img2tri.views.formats.save_load import SURFACE_FORMATS, save
         from img2tri.views.formats.solvers.save_for_solvers import EXPORTS, export
 
-        suffix = Path(path).suffix.lower()
+        suffix = known_suffix(path, (*SURFACE_FORMATS, *EXPORTS, *vectors.DRAWING_FORMATS, ".html"))
         if image is not None and suffix != ".html":
             raise ParameterError(f"image: expected to be left out for {suffix}, which holds no image; it is for .html")
         if suffix == ".html" and height is None and data is None:

@@ -15,7 +15,9 @@ from PIL import Image
 from img2tri import FileError, MeshError, ParameterError, TriangleMesh, __version__, mesh_image
 from img2tri.types import Frame
 from img2tri.views.formats.readers.read_msh_bdf import parse_msh
-from img2tri.views.formats.save_load import load
+from img2tri.views.formats.save_load import SURFACE_FORMATS, load
+from img2tri.views.formats.solvers.save_for_solvers import EXPORTS
+from img2tri.views.formats.svg_dxf_geojson import DRAWING_FORMATS
 
 HOLED = specimens.disc(50, 22) - specimens.disc(50, 9, (20.5, 26.0))
 GRAINS = specimens.polycrystal(40, 5)
@@ -500,6 +502,13 @@ def test_colour_by_changes_the_figure(grains, tmp_path):
 def test_a_figure_of_unknown_kind_is_refused(holed, tmp_path):
     with pytest.raises(FileError, match=r"expected a name that ends in \.pdf, \.png or \.svg"):
         holed.plot(None, tmp_path / "a.stl")
+
+
+def test_an_unknown_suffix_is_answered_with_all_that_are_known(tmp_path):
+    with pytest.raises(FileError, match="expected a name that ends in") as problem:
+        mesh_image(np.ones((9, 9), bool)).save(tmp_path / "a.dwg")
+    for suffix in (*SURFACE_FORMATS, *EXPORTS, *DRAWING_FORMATS, ".html"):
+        assert suffix in str(problem.value)
 
 
 def test_a_page_says_how_the_mesh_is_made_again(tmp_path):
