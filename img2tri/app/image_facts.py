@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 
 from img2tri.errors import ImageError
 from img2tri.raster.labels.colours_to_gray import to_gray
+from img2tri.raster.labels.label_map_check import flat_values
+from img2tri.raster.labels.label_maps import label_map
 from img2tri.raster.labels.otsu_threshold import binarize
 from img2tri.types import Picture
 from img2tri.views.page.html_page import thinned
@@ -22,7 +24,6 @@ from img2tri.views.page.packing import placed
 
 _MOST = 2048  # pixels along either side that are sent
 _LEVELS = 256
-_FEW = 64  # values; whole numbers with more are taken for gray
 _MANY = 4096  # labels; with more nobody looks for one in a list
 
 
@@ -63,8 +64,12 @@ def describe(picture: Picture, name: str, unit: str) -> Facts:
         "step": max(1, -(-max(h, w) // _MOST)),
     }
     gray, codes = _gray(picture)
+    looks_like_labels = flat_values(values) is not None  # the rule by which the library refuses to choose a threshold
+    if looks_like_labels and values.ndim == 3:
+        values = label_map(values, background=None).values
     labels, numbers = _labels(values)
-    head |= gray | {"labels": labels, "kind": _kind(picture, labels)}
+    kind = "labels" if looks_like_labels and labels else "mask" if labels and len(labels) <= 2 else "gray"
+    head |= gray | {"labels": labels, "kind": kind}
     return Facts(head, codes | numbers)
 
 
@@ -95,16 +100,6 @@ def _labels(values: NDArray[Any]) -> tuple[list[list[int]] | None, dict[str, NDA
         return None, {}
     codes = thinned(index.reshape(values.shape), _MOST).astype(np.uint8 if len(present) <= 256 else np.uint16)
     return [[int(label), int(count)] for label, count in zip(present, counts, strict=True)], {"labels": codes}
-
-
-def _kind(picture: Picture, labels: list[list[int]] | None) -> str:
-    """Propose what an image is: a "mask" of two values, a label map ("labels"), or "gray" values."""
-    values = picture.values
-    if labels is not None and len(labels) <= 2:
-        return "mask"
-    wide = values.dtype.kind == "i" or values.dtype.itemsize >= 4  # the library takes these for labels or measurements
-    few = labels is not None and len(labels) <= _FEW and ("palette" in picture.notes or labels[-1][0] < _FEW)
-    return "labels" if labels is not None and (few or wide) else "gray"
 
 
 def as_bytes(data: bytes) -> NDArray[np.uint8]:

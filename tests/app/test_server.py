@@ -163,7 +163,7 @@ def test_many_at_once_get_an_answer_each(app):
     found = []
 
     def wish(number):
-        found.append(ask(address, "/wish", token, {"options": {"seed": number}, "number": number})[0])
+        found.append(ask(address, "/wish", token, {"options": {"labels": True, "seed": number}, "number": number})[0])
 
     threads = [threading.Thread(target=wish, args=(number,)) for number in range(100, 108)]
     for thread in threads:

@@ -218,6 +218,9 @@ def test_an_image_is_described():
     assert sum(facts["counts"]) == GRAY.size
     assert describe(read(DISC), "a", "").head["kind"] == "mask"
     assert describe(read(specimens.polycrystal(60, 12)), "a", "").head["kind"] == "labels"
+    colours = np.stack([specimens.polycrystal(60, 12) * 20, np.full((60, 60), 9), np.zeros((60, 60), int)], axis=2).astype(np.uint8)
+    assert describe(read(colours), "a", "").head["kind"] == "labels"
+    assert len(describe(read(colours), "a", "").head["labels"]) == 12
     assert describe(read(GRAY.astype(float) / 7), "a", "").head["labels"] is None
 
 
