@@ -162,9 +162,6 @@ class MeshExports:
         suffix = known_suffix(path, (*SURFACE_FORMATS, *EXPORTS, *vectors.DRAWING_FORMATS, ".html"))
         if image is not None and suffix != ".html":
             raise ParameterError(f"image: expected to be left out for {suffix}, which holds no image; it is for .html")
-        if suffix == ".html" and height is None and data is None:
-            save_page(self, path, image)
-            return
         whole = suffix == ".vtu" and height is not None and layers is None and cells is None and order == 1
         if suffix in EXPORTS and not whole:
             made = self._cells(height, layers or 1, order, cells, data=data, quality=suffix in (".vtu", ".vtkhdf"))
@@ -181,11 +178,14 @@ class MeshExports:
         for name, value in given.items():
             if value is not None:
                 raise ParameterError(f"{name}: expected to be left out for {suffix}, found {value!r}; it is for {', '.join(EXPORTS)}")
-        if suffix in vectors.DRAWING_FORMATS:
+        if suffix == ".html" or suffix in vectors.DRAWING_FORMATS:
             drawn: dict[str, Any] = {"height": height, "data": data}
             for name, value in drawn.items():
                 if value is not None:
                     raise ParameterError(f"{name}: expected None for {suffix}, which is a drawing, found {value!r}")
+        if suffix == ".html":
+            save_page(self, path, image)
+        elif suffix in vectors.DRAWING_FORMATS:
             about = {"bounds": self._bounds(), "upward": self.frame.upward, "field_data": self._data()["field_data"]}
             vectors.save_outlines(path, self.outlines(), names=self.names, **about)
         else:

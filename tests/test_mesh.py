@@ -528,3 +528,10 @@ def test_a_page_says_how_the_mesh_is_made_again(tmp_path):
     assert "There is no image to judge this mesh by." in (tmp_path / "b.html").read_text(encoding="utf-8")
     with pytest.raises(ParameterError, match="image: expected to be left out for .stl"):
         mesh.save(tmp_path / "a.stl", image=image)
+
+
+@pytest.mark.parametrize("given", [{"height": 2.0}, {"layers": 3}, {"order": 2}, {"data": {"a": [1.0]}}])
+def test_a_page_takes_nothing_that_it_would_not_show(given, tmp_path):
+    with pytest.raises(ParameterError, match=f"{next(iter(given))}: expected"):
+        mesh_image(np.ones((9, 9), bool)).save(tmp_path / "a.html", **given)
+    assert list(tmp_path.iterdir()) == []

@@ -51,7 +51,8 @@ def download(mesh: TriangleMesh, stem: str, kind: str, *, height: float | None =
         elif kind == ".html":
             mesh.save(path, image=image)
         else:
-            mesh.save(path, height=height)
+            solid = height is not None and kind == ".mesh"  # which knows no wedges
+            mesh.save(path, height=height, cells="tetrahedra" if solid else None)
         files = sorted(Path(folder).iterdir())
         if len(files) == 1:
             return path.name, path.read_bytes()
