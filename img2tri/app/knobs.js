@@ -195,6 +195,7 @@ class Knobs {
     const gone = packed.removed || {}, words = Object.entries(gone).filter(([, n]) => typeof n === "number" && n > 0).map(([what, n]) => `${n.toLocaleString("en")} ${what.replaceAll("_", " ")}`);
     this.$("removed").textContent = words.length ? `removed: ${words.join(", ")}` : "nothing was removed";
     for (const row of this.$("part-list").children) row.querySelector(".swatch").style.background = packed.view.regions.find(region => region.label === +row.dataset.label)?.colour || "var(--faint)";
+    this.$("notes").replaceChildren(...packed.notes.map(note => Object.assign(document.createElement("li"), { textContent: note })));
     this.show_options();
     this.both();
     this.told(packed);

@@ -9,6 +9,7 @@ from __future__ import annotations
 import io
 import threading
 import time
+import warnings
 from collections.abc import Mapping
 from typing import Any
 
@@ -17,7 +18,7 @@ import numpy as np
 from img2tri.app import downloads, image_facts
 from img2tri.app.knobs import knobs, values
 from img2tri.certificate.report import certify
-from img2tri.errors import Img2triError, MeshError, ParameterError
+from img2tri.errors import Img2triError, Img2triWarning, MeshError, ParameterError
 from img2tri.mesh import TriangleMesh
 from img2tri.options import spelling
 from img2tri.pipeline import mesh_image
@@ -125,7 +126,9 @@ class Session:
             rest = {name: value for name, value in options.items() if name not in READING}
             if window is not None:
                 rest["crop"] = _cut(window, picture, rest.get("crop"))
-            mesh = mesh_image(picture, progress=lambda *_: self._still_wanted(number), **rest)
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", Img2triWarning)  # the page shows the notes, which have them
+                mesh = mesh_image(picture, progress=lambda *_: self._still_wanted(number), **rest)
             if window is None:
                 self.mesh, self.options = mesh, spelling.different(options)
         metrics: dict[str, Any] = measure(mesh.vertices, mesh.triangles, ["q", "min_angle"])
@@ -133,6 +136,7 @@ class Session:
         head: dict[str, Any] = {
             "number": number,
             "preview": window is not None,
+            "notes": [] if mesh.origin is None else mesh.origin.notes,
             "summary": _summary(mesh, metrics),
             "threshold": facts.get("settings", {}).get("threshold"),
             "edge_length": facts.get("settings", {}).get("edge_length"),

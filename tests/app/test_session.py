@@ -211,6 +211,15 @@ def test_what_is_no_format_is_refused():
         session.download("../../etc/passwd")
 
 
+def test_what_the_library_notes_is_handed_on():
+    specks = np.zeros((90, 90), np.uint8)
+    specks[::6, ::6] = specks[1::6, ::6] = specks[::6, 1::6] = specks[1::6, 1::6] = 200
+    session = Session(specks)
+    head, _ = unpacked(session.wish({"edge_length": "30"}, number=1))  # far more triangles than asked: a warning, which is an error here
+    assert head["notes"] == session.mesh.origin.notes
+    assert any("triangles" in note for note in head["notes"])
+
+
 def test_an_image_is_described():
     facts = describe(read(GRAY), "a", "mm").head
     assert (facts["kind"], facts["pixels"], facts["least"], facts["most"]) == ("gray", [60, 60], int(GRAY.min()), int(GRAY.max()))
