@@ -20,6 +20,7 @@ CHOICES: dict[str, tuple[str, ...]] = {
     "interior": ("lattice", "poisson"),
     "smoothing": ("none", "uniform", "cotangent"),
     "periodic": ("x", "y", "xy"),
+    "symmetric": ("x", "y", "xy"),
     "connectivity": ("4", "8"),
     "units": ("um", "mm", "cm", "m", "in", "ft"),
 }
