@@ -88,11 +88,19 @@ class TriangleMesh(MeshExports):
 
     @cached_property
     def periodic_pairs(self) -> dict[str, Ints]:
-        """Vertices (k, 2) at the same place on opposite sides, "x": left and right, "y": bottom and top; as far as asked for."""
+        """Vertices (k, 2) at the same place on opposite sides, "x": left and right, "y": bottom and top; as far as asked for.
+
+        Where only one of the sides is meshed its vertices have no partner.
+        """
+        import numpy as np
+
+        from img2tri.arrays import unique_edges
         from img2tri.shapes.periodic.vertex_pairs import vertex_pairs
 
         settings = self.origin.settings if self.origin else {}
-        return vertex_pairs(self.vertices, self.frame.bounds, settings.get("periodic"))
+        edges, sides = unique_edges(self.triangles)
+        boundary = edges[np.bincount(sides.ravel()) == 1]
+        return vertex_pairs(self.vertices, self.frame.bounds, settings.get("periodic"), boundary)
 
     def smoothed(
         self,

@@ -27,7 +27,7 @@ from img2tri.raster.reading import read
 from img2tri.recipes.conforming import Sizes, conform, trace_outlines, wanted_sizes
 from img2tri.recipes.mirrored import conform_symmetric
 from img2tri.shapes.mirror_symmetry import check_symmetric
-from img2tri.shapes.periodic.side_labels import check_periodic
+from img2tri.shapes.periodic.side_chains import check_periodic
 from img2tri.shapes.polygons import enclosed_areas
 from img2tri.shapes.trace.dual_edges import pixel_areas, pixels_beside
 from img2tri.types import Frame, Outlines, Picture, Provenance, RecipeMesh
@@ -84,7 +84,7 @@ def mesh_image(image: Any, *, progress: Callable[[str, float], None] | None = No
     specks, holes = (_in_pixels(name, o[name], frame) for name in ("min_area", "fill_holes"))
     zones, removed = without_specks(zones, min_area=specks, fill_holes=holes, largest=o["largest"], connectivity=o["connectivity"])
     warned = _forewarn(zones, frame, o, tell)
-    check_periodic(o["periodic"], zones.labels, recipe=o["recipe"], smoothing=o["smoothing"])
+    check_periodic(o["periodic"], recipe=o["recipe"], smoothing=o["smoothing"])
     check_symmetric(o["symmetric"], picture.values, zones.labels, periodic=o["periodic"], smoothing=o["smoothing"])
 
     tell("outlines", 0.2)

@@ -8,7 +8,7 @@ import pytest
 import specimens
 
 from img2tri import mesh_image
-from img2tri.errors import ImageError, MeshError, ParameterError
+from img2tri.errors import MeshError, ParameterError
 from img2tri.shapes.periodic.vertex_pairs import vertex_pairs
 
 
@@ -168,16 +168,79 @@ def test_a_mesh_made_without_has_no_pairs():
     assert mesh_image(specimens.disc(), edge_length=6).periodic_pairs == {}
 
 
-def test_an_error_says_where_sides_differ():
-    labels = grains(1, (20, 30), 5)
-    labels[7, -1] = 99
-    with pytest.raises(ImageError, match=r"last column, found \d+ and 99 in row 7 \(1 such\).*np\.pad\(image, \(\(0, 0\), \(0, 1\)\)"):
-        mesh_image(labels, labels=True, periodic="x")
-    labels = grains(1, (20, 30), 5)
-    labels[0, [4, 9]] = 77
-    words = r"first and the last row, found 77 and \d+ in column 4 \(2 such\).*np\.pad\(image, \(\(0, 1\), \(0, 0\)\)"
-    with pytest.raises(ImageError, match=words):
-        mesh_image(labels, labels=True, periodic="xy")
+def torus_disc(n, centre, radius):
+    """A disc on a torus of n x n pixels."""
+    y, x = np.mgrid[:n, :n] + 0.5
+    return np.hypot(*(np.minimum(abs(p - c), n - abs(p - c)) for p, c in ((x, centre[0]), (y, centre[1])))) < radius
+
+
+@pytest.mark.parametrize("centre", [(0, 0), (3.2, 60.7), (31.9, 0.4), (32, 32)])
+def test_the_cell_is_as_wide_as_the_image(centre):
+    disc = torus_disc(64, centre, 20)
+    mesh = mesh_image(disc, periodic="xy")
+    assert mesh.frame.bounds == (0, 0, 64, 64)
+    assert mesh.report.areas[1]["mesh"] == pytest.approx(disc.sum(), rel=1e-3)
+    assert mesh.report.kept
+    assert set(mesh.periodic_pairs) == {"x", "y"}
+
+
+def glued(mesh, *, shift):
+    """Vertices and triangles of a mesh with its copies to the right and above, vertices of a pair being one."""
+    n, pairs, offset = len(mesh.vertices), mesh.periodic_pairs, np.array(mesh.frame.bounds[2:])
+    vertices, triangles = [mesh.vertices], [mesh.triangles]
+    for k, name in enumerate(shift, 1):
+        number = np.arange(k * n, (k + 1) * n)
+        number[pairs[name][:, 0]] = pairs[name][:, 1]
+        vertices.append(mesh.vertices + offset * [name == "x", name == "y"])
+        triangles.append(number[mesh.triangles])
+    used, corners = np.unique(np.concatenate(triangles), return_inverse=True)
+    return np.concatenate(vertices)[used], corners.reshape(-1, 3)
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("background", [None, 0])
+def test_labels_may_differ_across_the_seam(seed, background):
+    rng = np.random.default_rng(seed)
+    for labels in (
+        grains(seed, (40, 36), 6)[:-1, :-1],
+        blots(seed, (30, 41), 2 + seed % 3, 2)[:-1, :-1],
+        rng.integers(0, 3, (21, 18)),
+        np.roll(np.kron(rng.integers(0, 2, (4, 4)), np.ones((5, 5), int)), (2, 3), (0, 1)),
+    ):
+        mesh = mesh_image(labels, labels=True, background=background, periodic="xy", edge_length=5)
+        h, w = labels.shape
+        assert mesh.frame.bounds == (0, 0, w, h)
+        assert mesh.report.kept
+        v, pairs = mesh.vertices, mesh.periodic_pairs
+        for name, axis, size in (("x", 0, w), ("y", 1, h)):
+            one, other = pairs[name].T
+            assert (v[one, axis] == 0).all()
+            assert (v[other, axis] == size).all()
+            assert (v[one, 1 - axis] == v[other, 1 - axis]).all()
+            if background is None:
+                assert len(one) == (v[:, axis] == 0).sum() == (v[:, axis] == size).sum(), "no vertex without its twin"
+            # Where the pixels on both sides are meshed, all along the seam, both have the same vertices.
+            first, last = (labels[::-1, [0, -1]].T if axis == 0 else labels[[-1, 0]]) != (-1 if background is None else background)
+            for at in np.flatnonzero(first & last):
+                on = [
+                    np.sort(v[(v[:, axis] == wall) & (v[:, 1 - axis] >= at) & (v[:, 1 - axis] <= at + 1), 1 - axis]) for wall in (0, size)
+                ]
+                assert np.array_equal(*on)
+        if background is None:
+            oracles.check_valid(*glued(mesh, shift="x"))
+            oracles.check_valid(*glued(mesh, shift="y"))
+        for label in set(np.unique(labels)) - {background}:
+            assert mesh.report.areas[label]["mesh"] == pytest.approx((labels == label).sum(), rel=0.02)
+
+
+def test_it_makes_no_difference_where_the_seam_is():
+    """Rolled images give cells of the same fractions, with the seam through regions, along an interface, and in the void."""
+    whole = torus_disc(48, (24, 24), 15).astype(int) + 1
+    for roll in ((0, 0), (24, 0), (13, 24), (9, 9), (20, 31)):
+        labels = np.roll(whole, roll, (0, 1))
+        mesh = mesh_image(labels, labels=True, background=None, periodic="xy", edge_length=5)
+        assert mesh.report.areas[2]["mesh"] == pytest.approx((whole == 2).sum(), rel=1e-3)
+        assert mesh.report.areas[1]["mesh"] == pytest.approx((whole == 1).sum(), rel=1e-3)
 
 
 def test_what_does_not_go_with_it_is_an_error():

@@ -57,8 +57,8 @@ class OutlineOptions(TypedDict, total=False):
         str | None,
         Option(
             None,
-            '"x", "y" or "xy": opposite sides, whose labels have to be the same, get vertices at the same places, see '
-            "`TriangleMesh.periodic_pairs`.",
+            '"x", "y" or "xy": the image repeats in these directions, after as many pixels as it has; opposite sides get vertices at the '
+            "same places.\n\nSee `TriangleMesh.periodic_pairs`. What is meshed on one side only, as its labels differ, has no partner.",
             none="sides are meshed each by itself",
             sign="D",
         ),

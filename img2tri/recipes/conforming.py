@@ -20,6 +20,7 @@ from img2tri.errors import ParameterError
 from img2tri.raster.labels.segmentation import Segmentation
 from img2tri.recipes.preserved_areas import with_areas_preserved
 from img2tri.shapes.periodic.pairs import FILLINGS, PeriodicPairs, find_periodic_pairs
+from img2tri.shapes.periodic.side_chains import cut_alike
 from img2tri.shapes.place.placement import place_on_pixel_sides, place_outlines
 from img2tri.shapes.simplify.simplification import Simplification, space_evenly
 from img2tri.shapes.simplify.tangential_relocation import relocate, slide_limits
@@ -67,6 +68,7 @@ def trace_outlines(
         "x", "y" or "xy": the points on these opposite sides are put at the same places; see `img2tri.shapes.periodic`.
     """
     crack_edges = find_crack_edges(zones.labels, background=zones.background, upward=frame.upward, connectivity=connectivity)
+    crack_edges = cut_alike(crack_edges, periodic)
     if outline == "pixel":
         return place_on_pixel_sides(crack_edges, frame)
     outlines, dual_edges = place_outlines(crack_edges, frame, gray=zones.gray, level=zones.level, corners=corners != "round")

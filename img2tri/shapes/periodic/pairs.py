@@ -8,7 +8,7 @@ import numpy as np
 
 from img2tri.arrays import Bools, Floats, Ints
 from img2tri.errors import MeshError, bounded
-from img2tri.shapes.periodic.side_labels import DIRECTIONS
+from img2tri.shapes.periodic.side_chains import DIRECTIONS
 from img2tri.shapes.periodic.vertex_pairs import Walls, divided_alike
 from img2tri.shapes.simplify.simplification import Simplification
 from img2tri.shapes.simplify.tolerance import enforce_tolerance
@@ -46,12 +46,30 @@ class PeriodicPairs:
         return result
 
     def alike(self, outlines: Outlines) -> Outlines:
-        """Put the points of dense outlines on opposite sides at the same places: half-way between where the two were."""
+        """Put the points of dense outlines on opposite sides at the same places: half-way between where the two were.
+
+        Where an outline reaches only one of the sides, and the other was cut for its sake, both are where the outline is.
+        """
         points = outlines.points.copy()
         one, other = outlines.chains.indices[self.one], outlines.chains.indices[self.other]
         along = 1 - self.axis
-        points[one, along] = points[other, along] = (outlines.points[one, along] + outlines.points[other, along]) / 2
+        reached = self._reached(outlines)
+        share = np.where(reached[one] == reached[other], 0.5, reached[one])
+        places = share * outlines.points[one, along] + (1 - share) * outlines.points[other, along]
+        points[one, along] = points[other, along] = places
         return replace(outlines, points=points)
+
+    def _reached(self, outlines: Outlines) -> Bools:
+        """Tell at which points (n,) a chain ends that does not lie on one of the sides."""
+        chains = outlines.chains
+        second = chains.indices[chains.starts[:-1] + 1]
+        beside = np.zeros(len(second), bool)
+        for axis, *walls in self.walls:
+            for wall in walls:
+                beside |= (outlines.points[chains.ends[0], axis] == wall) & (outlines.points[second, axis] == wall)
+        inner = ~beside & ~chains.rings
+        ends = np.concatenate([end[inner] for end in chains.ends])
+        return np.bincount(ends, minlength=len(outlines.points)) > 0
 
     def enforce_tolerance(self, s: Simplification, *, tolerance: float, passed: Simplification | None = None) -> Simplification:
         """Enforce the tolerance, see `img2tri.shapes.simplify.tolerance.enforce_tolerance`, with both sides divided alike.
@@ -113,7 +131,7 @@ class PeriodicPairs:
 
 
 def find_periodic_pairs(outlines: Outlines, dual_edges: DualEdges, periodic: str | None) -> PeriodicPairs:
-    """Find the pairs on opposite sides of an image whose labels there are the same, see `check_periodic`.
+    """Find the pairs on opposite sides of an image whose chains were cut alike there, see `cut_alike`; only what both sides have is paired.
 
     Parameters
     ----------
@@ -125,9 +143,10 @@ def find_periodic_pairs(outlines: Outlines, dual_edges: DualEdges, periodic: str
     pairs, axes, walls = [], [], []
     for axis in DIRECTIONS[periodic]:
         (low, low_keys), (high, high_keys) = _along_sides(dual_edges, axis)
+        low, high = low[_found_in(low_keys, high_keys)], high[_found_in(high_keys, low_keys)]
         if not len(low):
             continue
-        assert np.array_equal(low_keys, high_keys), "chains on sides with the same labels are the same"
+        assert len(low) == len(high), "chains on both sides were cut at the same places"
         pairs.append((low, high))
         axes.append(np.full(len(low), axis))
         z = outlines.points[outlines.chains.indices, axis]
@@ -140,6 +159,12 @@ def find_periodic_pairs(outlines: Outlines, dual_edges: DualEdges, periodic: str
         np.concatenate(axes or nothing),
         tuple(walls),
     )
+
+
+def _found_in(keys: Ints, others: Ints) -> Bools:
+    """Tell which rows (k, 2) are among others (l, 2)."""
+    most = int(max(keys.max(initial=0), others.max(initial=0))) + 1
+    return np.isin(keys[:, 0] * most + keys[:, 1], others[:, 0] * most + others[:, 1])
 
 
 def _along_sides(dual_edges: DualEdges, axis: int) -> tuple[tuple[Ints, Ints], tuple[Ints, Ints]]:

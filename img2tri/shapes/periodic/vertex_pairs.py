@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from img2tri.arrays import ChainIndex, Floats, Ints
+from img2tri.arrays import Bools, ChainIndex, Floats, Ints
 from img2tri.errors import MeshError
-from img2tri.shapes.periodic.side_labels import DIRECTIONS
+from img2tri.shapes.periodic.side_chains import DIRECTIONS
 from img2tri.types import Outlines
 
 ON_SIDE = 1e-9  # of the size of the image: what lies so near to a side lies on it
@@ -23,28 +23,39 @@ def divided_alike(outlines: Outlines, vertices: Floats, walls: Walls) -> Outline
     """
     result = outlines
     for wall in walls:
-        places = _missing_places(outlines.points, vertices, *wall)
+        places = _missing_places(outlines, vertices, *wall)
         if len(places):
             result = _insert(result, places, *wall)
     return result
 
 
-def _missing_places(points: Floats, vertices: Floats, axis: int, low: float, high: float) -> Floats:
+def _missing_places(outlines: Outlines, vertices: Floats, axis: int, low: float, high: float) -> Floats:
     """Places along a side (k,) at which filling divided it: between two points that were given, those of the side that has more.
 
-    Empty if both sides were divided alike.
+    Empty if both sides were divided alike, as far as both are meshed.
     """
-    given = np.sort(points[points[:, axis] == low, 1 - axis])
+    points = outlines.points
+    given = np.unique(points[(points[:, axis] == low) | (points[:, axis] == high), 1 - axis])
+    segments = outlines.segments[0]
     new = []
-    for wall in (low, high):
+    for wall, opposite in ((low, high), (high, low)):
         places = vertices[np.abs(vertices[:, axis] - wall) < ON_SIDE * (high - low), 1 - axis]
-        new.append(np.setdiff1d(places, given))
+        across = points[segments, axis] == opposite
+        new.append(np.setdiff1d(places[_covered(places, points[segments[across.all(axis=1)], 1 - axis])], given))
     if np.array_equal(new[0], new[1]):
         return np.zeros(0)
     at = [np.searchsorted(given, places) for places in new]
     count = [np.bincount(where, minlength=len(given) + 1) for where in at]
     finer = count[1] > count[0]
     return np.concatenate([new[0][~finer[at[0]]], new[1][finer[at[1]]]])
+
+
+def _covered(places: Floats, stretches: Floats) -> Bools:
+    """Tell which places (k,) lie in one of some stretches (s, 2) that do not overlap, their ends among them."""
+    low, high = np.sort(stretches.min(axis=1)), np.sort(stretches.max(axis=1))
+    before = np.searchsorted(low, places, "right")
+    ended = np.searchsorted(high, places, "left")
+    return np.asarray(before > ended)
 
 
 def _insert(outlines: Outlines, places: Floats, axis: int, low: float, high: float) -> Outlines:
@@ -68,10 +79,13 @@ def _insert(outlines: Outlines, places: Floats, axis: int, low: float, high: flo
     return replace(outlines, points=points, chains=ChainIndex(indices, starts, outlines.chains.rings))
 
 
-def vertex_pairs(vertices: Floats, bounds: tuple[float, float, float, float], periodic: str | None) -> dict[str, Ints]:
+def vertex_pairs(
+    vertices: Floats, bounds: tuple[float, float, float, float], periodic: str | None, boundary: Ints | None = None
+) -> dict[str, Ints]:
     """Pair the vertices on opposite sides.
 
-    `bounds` are (left, bottom, right, top) of the image.
+    `bounds` are (left, bottom, right, top) of the image; `boundary` (e, 2) the edges of the mesh that have a triangle on one side only:
+    where they run along one side of the image and not along the opposite one, vertices have no partner. None: all have one.
 
     Returns
     -------
@@ -96,7 +110,11 @@ def vertex_pairs(vertices: Floats, bounds: tuple[float, float, float, float], pe
         pair = []
         for wall in (low, high):
             on = np.flatnonzero(np.abs(vertices[:, axis] - wall) < ON_SIDE * (high - low))
-            pair.append(on[np.argsort(vertices[on, 1 - axis])])
+            on = on[np.argsort(vertices[on, 1 - axis])]
+            if boundary is not None:
+                opposite = np.abs(vertices[boundary, axis] - (low + high - wall)) < ON_SIDE * (high - low)
+                on = on[_covered(vertices[on, 1 - axis], vertices[boundary[opposite.all(axis=1)], 1 - axis])]
+            pair.append(on)
         one, other = (vertices[on, 1 - axis] for on in pair)
         if not np.array_equal(one, other):
             raise MeshError(f"periodic: expected the same places on opposite sides, found {len(one)} and {len(other)} vertices that differ")
