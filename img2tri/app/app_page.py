@@ -21,7 +21,7 @@ def app_page(*, token: str, nonce: str) -> str:
     parts = {
         "version": __version__,
         "title": "img2tri",
-        "policy": "",
+        "policy": '<link rel="icon" href="data:,">',  # or the browser asks for one
         "kind": "img2tri app",
         "style": style(),
         "body": body("nothing leaves this machine"),
