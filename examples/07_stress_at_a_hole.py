@@ -129,9 +129,8 @@ def main(out: str | Path = "out", count: int = 8) -> dict[str, float]:
         for kind in kinds:
             raw, mean = errors(kind, radius, length, 1 if kind == "pixels" else count).T
             turn = np.degrees(length / radius)
-            print(
-                f"{f'R {radius}, edges of {length}: {ROUTES[kind]}':56}{turn:12.1f} deg{np.abs(raw).max():9.2f}{np.abs(mean).max():10.2f}"
-            )
+            what = f"R {radius}, edges of {length}: {ROUTES[kind]}"
+            print(f"{what:56}{turn:12.1f} deg{np.abs(raw).max():9.2f}{np.abs(mean).max():10.2f}")
             found[f"{kind}_{radius}_{length}_raw"] = float(np.abs(raw).max())
             found[f"{kind}_{radius}_{length}"] = float(np.abs(mean).max())
     # The paper's recipe takes the outermost contours only: it fills the hole.
