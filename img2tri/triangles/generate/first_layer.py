@@ -16,7 +16,6 @@ from img2tri.arrays import Bools, Floats, Ints, Points, as_rows, independent
 from img2tri.triangles.generate.pslg import Pslg
 
 CROWDED = 0.68  # two points nearer than this times the wanted edge length are one too many
-MIDDLE = 0.6  # the middle of a segment keeps others off by this part of what a point does: an apex may look at it from near
 SPAN = 0.3  # lengths of a class, over its longest; classes begin at halves, and so overlap by a factor of 0.5 / SPAN
 
 
@@ -31,11 +30,6 @@ def apexes(pslg: Pslg, wanted: Floats) -> tuple[Points, Floats]:
     on_left, on_right = pslg.left != 0, pslg.right != 0
     places = np.concatenate([(pslg.middles + up)[on_left], (pslg.middles - up)[on_right]])
     return places, np.concatenate([wanted[on_left], wanted[on_right]])
-
-
-def obstacles(pslg: Pslg, at_points: Floats, at_middles: Floats) -> tuple[Points, Floats]:
-    """Return places on the outlines, and the lengths by which others are kept off: the points, and the middles, which keep less."""
-    return np.concatenate([pslg.points, pslg.middles]), np.concatenate([at_points, MIDDLE * at_middles])
 
 
 def uncrowded(points: Points, wanted: Floats, fixed: int) -> Bools:

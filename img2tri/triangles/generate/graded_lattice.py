@@ -19,7 +19,9 @@ from img2tri.triangles.generate.hexagonal_lattice import Lattice
 from img2tri.triangles.generate.size_function import SizeFunction
 
 RATIO = 3**0.5  # of pitches, from one lattice to the next
-LONGEST = 1.36  # a lattice is used where the wanted length is less than this times its pitch
+LONGEST = 1.36
+"""A lattice is used where the wanted length is less than this times its pitch: a little later than half-way to the next one by ratio,
+3^(1/4) = 1.316. Where lengths grow, later means more triangles, and better ones: mean q .972, .977, .978 at 1.2, 1.316, 1.36."""
 LEVELS = 100  # of lattices: pitches down to 1e-24 of the coarsest
 
 

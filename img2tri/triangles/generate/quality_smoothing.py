@@ -11,7 +11,7 @@ They say all: the squares of the edges sum to |X|^2 + |Y|^2, the area is (|Y|^2 
 equilateral, corner a alone would have to move by -X, corner b by -w^2 X, corner c by -w X.
 
 `smooth` moves every vertex by the mean of what its triangles ask, weighted by quality^-power: Jacobi steps down the energy
-sum of weight |X|^2, whose matrix is C diag(weight) C* with a row of C for each vertex and a column for each triangle. With power 2 that
+sum of weight |X|^2, whose matrix is C diag(weight) C* with a row of C for each vertex and a column for each triangle. With power 1 that
 is a quick smoother. With large powers only the worst triangle of each vertex counts: `raise_worst_angles` does by these what hill
 climbing for the smallest angle does (L. Freitag and C. Ollivier-Gooch, Tetrahedral mesh improvement using swapping and smoothing, Int. J.
 Numer. Methods Eng. 40, 1997, https://doi.org/10.1002/(SICI)1097-0207(19971115)40:21<3979::AID-NME251>3.0.CO;2-9), in a few array
@@ -39,15 +39,15 @@ from img2tri.triangles.angles import smallest_angles, smallest_tangents
 TURN = np.exp(2j * np.pi / 3)
 DEFECT = np.array([1, TURN, TURN**2])
 SAFE = 30.0  # degrees: no angle is made smaller than this
-FLATTEST = 0.05  # qualities below this weigh as much as this, else one flat triangle stops its neighbours
+FLATTEST = 0.05  # qualities below this weigh as much as this: a flat triangle would weigh infinitely much
 
 Schedule = Sequence[tuple[int, float, int]]
 """Rows of (doublings, damping, steps): the power of the weights is 2 to the number of doublings."""
-SMOOTH: Schedule = ((1, 1.0, 5),)
-WORST_FIRST: Schedule = ((5, 0.3, 4), (6, 0.2, 4), (7, 0.1, 7))
-SLIDING = 0.8  # of its step is what a vertex takes that slides along a line
+SMOOTH: Schedule = ((0, 1.0, 5),)
+WORST_FIRST: Schedule = ((5, 0.3, 2), (6, 0.2, 2), (7, 0.1, 4))
+SLIDING = 0.8  # of its step is what a vertex takes that slides along a line; anything from a half to 1.6 serves
 TARGET = 44.0  # degrees: angles above this are not worth optimising
-NEAR_WORST = 2.0  # degrees: angles within this of the worst are optimised with it
+NEAR_WORST = 4.0  # degrees: angles within this of the worst are optimised with it
 WORST_PASSES = 2  # one after the other, as the worst place may then be another
 WORST_RINGS = 3  # rings of triangles around the worst that may change
 

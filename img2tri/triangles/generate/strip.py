@@ -13,7 +13,7 @@ import numpy as np
 from img2tri.arrays import Bools, Floats, Ints, Points, as_rows
 from img2tri.triangles.angles import narrower
 from img2tri.triangles.generate.constrained_delaunay import triangulate
-from img2tri.triangles.generate.first_layer import apexes, obstacles, uncrowded
+from img2tri.triangles.generate.first_layer import apexes, uncrowded
 from img2tri.triangles.generate.graded_lattice import finer, reach
 from img2tri.triangles.generate.hexagonal_lattice import Codes, Core, Lattice
 from img2tri.triangles.generate.pslg import Pslg
@@ -70,10 +70,9 @@ def lay_strip(pslg: Pslg, at_points: Floats, at_middles: Floats, sizes: SizeFunc
 
     `at_points` and `at_middles` are the lengths wanted at the points of the outlines and the middles of their segments.
     """
-    kept_off, their_lengths = obstacles(pslg, at_points, at_middles)
     tips, tip_lengths = apexes(pslg, at_middles)
-    near, wanted = np.concatenate([kept_off, tips]), np.concatenate([their_lengths, tip_lengths])
-    stays = uncrowded(near, wanted, len(kept_off))
+    near, wanted = np.concatenate([pslg.points, tips]), np.concatenate([at_points, tip_lengths])
+    stays = uncrowded(near, wanted, len(pslg.points))
     near, wanted = near[stays], wanted[stays]
     codes = lattice.codes(pslg.points, pslg.segments, pslg.left, pslg.right)
     busy, fine, fine_lengths = _fine(pslg, sizes, lattice, codes)
@@ -93,7 +92,7 @@ def lay_strip(pslg: Pslg, at_points: Floats, at_middles: Floats, sizes: SizeFunc
     edges = core.rim()
     rim, ends = np.unique(edges, return_inverse=True)
     constraints = pslg.joined(lattice.positions(rim), ends.reshape(-1, 2), right=codes[edges[:, 0]].astype(np.int64))
-    free = np.concatenate([near[len(kept_off) :], lattice.positions(between), fine])
+    free = np.concatenate([near[len(pslg.points) :], lattice.positions(between), fine])
     # Nodes of a lattice lie on common circles, over which exact predicates take long: a nudge, and they do not.
     free += NUDGE * pslg.lengths.min() * np.exp(2j * np.pi * GOLDEN * np.arange(len(free)))
     return Strip(constraints, len(pslg.segments), free, core, rim)
