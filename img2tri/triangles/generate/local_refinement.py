@@ -17,7 +17,7 @@ from img2tri.triangles.generate.pslg import Pslg
 from img2tri.triangles.generate.quality_smoothing import patch_around, smooth, touching
 
 PATCH_RINGS = (3, 3, 6, 12, 24, 1_000_000)  # how far patches reach around bad triangles, then around edges of the rim that were split
-SHORTEST_EDGE = 0.05  # no edge becomes shorter than about this times the shortest segment in the patch
+SHORTEST_EDGE = 0.05  # of the shortest segment in the patch: no edge becomes shorter. A stop only: sharp corners would be refined for ever
 
 
 def refine_locally(

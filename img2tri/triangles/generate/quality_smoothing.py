@@ -11,7 +11,7 @@ They say all: the squares of the edges sum to |X|^2 + |Y|^2, the area is (|Y|^2 
 equilateral, corner a alone would have to move by -X, corner b by -w^2 X, corner c by -w X.
 
 `smooth` moves every vertex by the mean of what its triangles ask, weighted by quality^-power: Jacobi steps down the energy
-sum of weight |X|^2, whose matrix is C diag(weight) C* with a row of C for each vertex and a column for each triangle. With power 1 that
+sum of weight |X|^2, whose matrix is C diag(weight) C* with a row of C for each vertex and a column for each triangle. With power 2 that
 is a quick smoother. With large powers only the worst triangle of each vertex counts: `raise_worst_angles` does by these what hill
 climbing for the smallest angle does (L. Freitag and C. Ollivier-Gooch, Tetrahedral mesh improvement using swapping and smoothing, Int. J.
 Numer. Methods Eng. 40, 1997, https://doi.org/10.1002/(SICI)1097-0207(19971115)40:21<3979::AID-NME251>3.0.CO;2-9), in a few array
@@ -43,11 +43,10 @@ FLATTEST = 0.05  # qualities below this weigh as much as this: a flat triangle w
 
 Schedule = Sequence[tuple[int, float, int]]
 """Rows of (doublings, damping, steps): the power of the weights is 2 to the number of doublings."""
-SMOOTH: Schedule = ((0, 1.0, 5),)
-WORST_FIRST: Schedule = ((5, 0.3, 2), (6, 0.2, 2), (7, 0.1, 4))
-SLIDING = 0.8  # of its step is what a vertex takes that slides along a line; anything from a half to 1.6 serves
+SMOOTH: Schedule = ((1, 1.0, 5),)
+WORST_FIRST: Schedule = ((5, 0.3, 4), (6, 0.2, 4), (7, 0.1, 7))
 TARGET = 44.0  # degrees: angles above this are not worth optimising
-NEAR_WORST = 4.0  # degrees: angles within this of the worst are optimised with it
+NEAR_WORST = 4.0  # degrees: angles within this of the worst are optimised with it; 2 to 8 serve
 WORST_PASSES = 2  # one after the other, as the worst place may then be another
 WORST_RINGS = 3  # rings of triangles around the worst that may change
 
@@ -119,7 +118,7 @@ def smooth(vertices: Points, triangles: Ints, free: Bools, schedule: Schedule = 
             moves, total = np.asarray(sum_of_moves @ weighted), np.asarray(sum_of_weights @ weights)
             moved[where] += damping * moves[where] / total[where]
             if lines is not None:
-                step = SLIDING * damping * moves[lines.at] / total[lines.at]
+                step = damping * moves[lines.at] / total[lines.at]
                 way = ((moved[lines.at] + step - lines.start) * lines.along.conj()).real
                 moved[lines.at] = lines.start + np.clip(way, -lines.limits, lines.limits) * lines.along
     return _shortened(vertices, moved, triangles)

@@ -22,7 +22,7 @@ from img2tri.triangles.generate.size_function import SizeFunction, nearest_of
 from img2tri.triangles.generate.valence_repair import repair_valences
 
 CLEAR = 0.66  # lattice nodes nearer to an outline or apex than this times the wanted length are dropped
-NUDGE, GOLDEN = 1e-7, 0.618  # of the shortest segment: how far free points are put off, each another way than the one before
+NUDGE, GOLDEN = 1e-7, 0.618  # of the shortest segment: how far free points are put off; of a turn, from one to the next: any odd part
 
 
 @dataclass(frozen=True, eq=False)
