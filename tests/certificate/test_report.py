@@ -451,3 +451,12 @@ def test_nothing_is_promised_for_the_recipes_of_the_paper_and_all_is_measured(re
     assert report.hausdorff > 0.5
     assert report.areas[1]["mesh"] != report.areas[1]["image"]
     assert not report.kept
+
+
+def test_areas_are_promised_unless_they_need_not_be_kept():
+    disc = specimens.disc(40, 12)
+    free = mesh_image(disc, edge_length=12, tolerance="1px", keep_area=False).report
+    assert free.areas[1]["error"] < -0.05
+    assert free.kept
+    assert not free.areas_off
+    assert abs(mesh_image(disc, edge_length=12, tolerance="1px").report.areas[1]["error"]) < 0.01
