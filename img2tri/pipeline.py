@@ -159,7 +159,7 @@ def _in_pixels(name: str, area: bool | float | str | None, frame: Frame) -> floa
 def _with_paper_threshold(o: MeshOptions) -> SegmentOptions:
     """Return how regions are found; the paper's level is its own."""
     zones = of(SegmentOptions, o)
-    if o["recipe"] != "conforming" and o["threshold"] is None and not o["labels"]:
+    if o["recipe"] != "conforming" and all(o[name] in (None, False) for name in ("threshold", "labels", "colors", "absorb")):
         zones["threshold"] = PAPER_THRESHOLD
     return zones
 

@@ -29,6 +29,7 @@ from numpy.typing import NDArray
 
 from img2tri.arrays import Bools, Ints
 from img2tri.raster.labels.label_maps import distinct, label_map
+from img2tri.raster.labels.otsu_threshold import two_valued
 
 MOST_MIXED = 0.1  # of the boundary's pixels
 LEAST_EQUAL = 0.5  # of neighbours in a row: less than that are no patches
@@ -55,6 +56,8 @@ def flat_values(values: NDArray[Any]) -> NDArray[Any] | None:
     >>> flat_values(three_phases > 1)
     """
     if values.dtype == bool or min(values.shape[:2]) < 2 or not _has_patches(values if values.ndim == 2 else values[..., 0]):
+        return None
+    if values.ndim == 2 and two_valued(values):
         return None
     if values.ndim == 3:
         if values.dtype.kind == "f" or values.dtype.itemsize > 2:
@@ -96,15 +99,24 @@ def _own_values(values: NDArray[Any]) -> NDArray[Any] | None:
 
     # What each value is made of.
     labels = distinct(values)
-    number = np.searchsorted(labels, values)
-    everywhere, mixes, patches = (
-        np.bincount(of.reshape(-1), minlength=len(labels)) for of in (number, number.reshape(-1)[mixed], number[flat])
-    )
+    if not few_mixed and len(labels) > MANY_VALUES:
+        return None
+    everywhere, mixes, patches = (_counts(values, of, labels) for of in (slice(None), mixed, flat.reshape(-1)))
     held = 2 * patches >= everywhere
     own = (2 * mixes < everywhere) & ((patches > 0) | (everywhere > LEAST_SHARE * values.size))
     if own.sum() < 3 or 2 * held.sum() < len(labels) or not (few_mixed or held.all()):
         return None
-    return None if own.sum() > MANY_VALUES and _is_shading(number, flat, right, down) else labels[own]
+    if own.sum() > MANY_VALUES and _is_shading(np.searchsorted(labels, values), flat, right, down):
+        return None
+    return labels[own]
+
+
+def _counts(values: NDArray[Any], of: Any, labels: NDArray[Any]) -> Ints:
+    """Return how many of some pixels have each of some values."""
+    some = values.reshape(-1)[of]
+    if values.dtype in (np.uint8, np.uint16):
+        return np.asarray(np.bincount(some, minlength=int(labels[-1]) + 1)[labels])
+    return np.bincount(np.searchsorted(labels, some), minlength=len(labels))
 
 
 def _between(values: NDArray[Any], at: Ints) -> Bools:
