@@ -166,7 +166,7 @@ def _by_colours(
     palette, values = picture.notes.get("palette"), picture.values
     values = without_hidden(values if palette is None else palette[values], gone)
     numbers, mix = label_by_colours(values, colors, background=background, missing=gone)
-    listed = ", ".join(map(str, mix.labels[:LISTED_VALUES].tolist())) + (", ..." if len(mix.labels) > LISTED_VALUES else "")
+    listed = _listed(mix.labels, colours=mix.values.shape[2] == 3 and mix.values.dtype == np.uint8)
     notes = (f"each pixel was given one of {len(mix.labels)} colours: {listed}", *(TRANSPARENT,) * clear)
     return Segmentation(numbers.values, numbers.background, gray=mix, notes=notes)
 
@@ -227,11 +227,17 @@ def _opaque(picture: Picture, gone: Bools | None) -> NDArray[Any]:
     return without_hidden(values, gone)
 
 
+def _listed(values: NDArray[Any], *, colours: bool) -> str:
+    """List values in a message, colours as #rrggbb."""
+    first = [f"#{value:06x}" if colours else f"{value}" for value in values[:LISTED_VALUES].tolist()]
+    return ", ".join([*first, *["..."] * (len(values) > LISTED_VALUES)])
+
+
 def _check_thresholdable(values: NDArray[Any]) -> None:
     """Refuse to choose a threshold for what looks like a label map."""
     found = flat_values(values)
     if found is not None:
-        listed = ", ".join(map(str, found[:LISTED_VALUES].tolist())) + (", ..." if len(found) > LISTED_VALUES else "")
+        listed = _listed(found, colours=values.ndim == 3 and values.dtype == np.uint8 and found.max() > np.iinfo(np.uint8).max)
         raise ImageError(
             f"image: expected a mask or gray values, found what looks like a label map, {len(found)} flat values that meet without "
             f"a transition ({listed}); labels=True makes each value a region of its own, "
