@@ -168,7 +168,14 @@ def _by_colours(
     numbers, mix = label_by_colours(values, colors, background=background, missing=gone)
     listed = _listed(mix.labels, colours=mix.values.shape[2] == 3 and mix.values.dtype == np.uint8)
     notes = (f"each pixel was given one of {len(mix.labels)} colours: {listed}", *(TRANSPARENT,) * clear)
-    return Segmentation(numbers.values, numbers.background, gray=mix, notes=notes)
+    return Segmentation(numbers.values, numbers.background, gray=None if _is_hard(mix, numbers.values) else mix, notes=notes)
+
+
+def _is_hard(mix: ColourMix, labels: NDArray[Any]) -> bool:
+    """Tell whether every pixel that is there is exactly of its colour: then the labels say all."""
+    place = np.minimum(np.searchsorted(mix.labels, labels), len(mix.labels) - 1)
+    exact = (mix.colours[place] == mix.values).all(axis=2)
+    return bool((exact if mix.missing is None else exact | mix.missing).all())
 
 
 def _by_levels(picture: Picture, gone: Bools | None, levels: Sequence[float], background: int | None) -> Segmentation:

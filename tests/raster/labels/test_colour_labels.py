@@ -152,6 +152,13 @@ def test_other_depths():
         assert scale
 
 
+def test_a_hard_drawing_is_meshed_as_its_label_map_is():
+    hard = np.asarray(drawing(1))
+    one, other = mesh_image(hard, colors=3), mesh_image(hard, labels=True)
+    assert (one.vertices == other.vertices).all()
+    assert (one.regions == other.regions).all()
+
+
 def test_every_pixel_of_an_exact_drawing_keeps_its_colour():
     hard = np.asarray(drawing(1))
     colours = np.array([(0, 0, 0), RED, BLUE, YELLOW])
