@@ -1,0 +1,104 @@
+"""What each tuning constant of the outlines is worth: halve it, double it, and see which measures move.
+
+In: the package that Python imports. Out: a table of constants, and of measures that change by more than `SHOWN` of themselves.
+
+    PYTHONPATH=.:tests python tests/benchmarks/tuning_constants.py [name ...]
+"""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+import sys
+import warnings
+
+import numpy as np
+import specimens
+from benchmarks.shapes import blob
+
+import img2tri.shapes
+from img2tri import mesh_image
+from img2tri.shapes.place.placement import place_outlines
+from img2tri.shapes.trace.crack_edges import find_crack_edges
+from img2tri.types import Frame
+
+SHOWN = 0.02
+MODULES = [importlib.import_module(found.name) for found in pkgutil.walk_packages(img2tri.shapes.__path__, "img2tri.shapes.")]
+Y, X = np.mgrid[:128, :128] + 0.5
+GRAY = np.rint(255 * np.clip(40.3 - np.hypot(X - 61.2, Y - 66.7) + 0.5, 0, 1)).astype(np.uint8)
+IMAGES = {
+    "blob": (blob(128, seed=4, holes=2).astype(np.uint8), {"edge_length": 7}),
+    "thin": ((specimens.disc(80, 35.1) - specimens.disc(80, 31.9)).astype(np.uint8), {"edge_length": 7, "elements_across": 2}),
+    "grains": (specimens.polycrystal(90, 14, 3), {"labels": True, "edge_length": 7}),
+    "noise": (np.random.default_rng(0).integers(0, 2, (24, 27)).astype(np.uint8), {"edge_length": 5}),
+    "turned": (specimens.rectangle(80, (50, 33), 27).astype(np.uint8), {"edge_length": 6}),
+    "gray": (GRAY, {"edge_length": 6}),
+    "graded": (specimens.disc(100, 40.3).astype(np.uint8), {"edge_length": lambda p: 3 + 0.08 * abs(p[:, 0]), "segments_per_turn": 40}),
+    "periodic": (
+        np.pad(specimens.polycrystal(60, 9, 1), ((0, 60), (0, 60)), mode="symmetric"),
+        {"labels": True, "periodic": "x", "edge_length": 6},
+    ),
+}
+
+
+def measures() -> dict[str, float]:
+    """Everything that is looked at."""
+    found: dict[str, float] = {}
+    for radius in (8.0, 22.0, 60.0):
+        off = []
+        for seed in (0, 1, 2):
+            centre = 65 + np.random.default_rng(seed).uniform(-0.5, 0.5, 2)  # row and column
+            mask = specimens.disc(130, radius, tuple(centre))
+            points = place_outlines(find_crack_edges(mask, upward=False), Frame(mask.shape, upward=False))[0].points
+            off.append(np.hypot(*(points - centre[::-1]).T) - radius)
+        found[f"rms disc {radius:g}"] = float(np.sqrt(np.mean(np.concatenate(off) ** 2)))
+    for name, (image, options) in IMAGES.items():
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            mesh = mesh_image(image, **options)
+            report = mesh.report
+        found[f"{name} angle"] = report.smallest_angle
+        found[f"{name} triangles"] = len(mesh.triangles)
+        found[f"{name} q"] = float(np.mean(mesh.quality().arrays["q"]))
+        found[f"{name} off"] = report.hausdorff
+        found[f"{name} area"] = max((abs(row["error"]) for row in report.areas.values()), default=0.0) * 100
+    return found
+
+
+def tried(name: str, factor: float) -> dict[str, float] | str:
+    """Measure with one constant multiplied, in every module that has it."""
+    homes = [module for module in MODULES if name in vars(module)]
+    value = getattr(homes[0], name)
+    new = tuple(type(v)(v * factor) for v in value) if isinstance(value, tuple) else type(value)(value * factor)
+    try:
+        for module in homes:
+            setattr(module, name, new)
+        return measures()
+    except Exception as error:  # whatever a wrong constant leads to is a finding
+        return f"{type(error).__name__}: {error}"[:60]
+    finally:
+        for module in homes:
+            setattr(module, name, value)
+
+
+def main(names: list[str]) -> None:
+    kinds = (int, float, tuple, np.floating)
+    every = {name for module in MODULES for name, value in vars(module).items() if name.isupper() and isinstance(value, kinds)}
+    before = measures()
+    print(", ".join(f"{key} {value:.3g}" for key, value in before.items()), flush=True)
+    for name in names or sorted(every):
+        for factor in (0.5, 2.0):
+            after = tried(name, factor)
+            if isinstance(after, str):
+                moved = [after]
+            else:
+                moved = [
+                    f"{key} {value:.3g}->{after[key]:.3g}"
+                    for key, value in before.items()
+                    if abs(after[key] - value) > SHOWN * abs(value) + 2e-3
+                ]
+            print(f"{name} x {factor:g}: {'; '.join(moved) or 'nothing'}", flush=True)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
