@@ -26,15 +26,19 @@ import numpy as np
 
 from img2tri.arrays import Bools, ChainIndex, Floats, Ints, Points, cross
 from img2tri.shapes.place.padded_chains import PaddedChains
-from img2tri.shapes.place.smoothing_splines import PADDING, SmoothingSpline, fade_out, farther_than
+from img2tri.shapes.place.smoothing_splines import PADDING, CurvatureSpline, SmoothingSpline, fade_out, farther_than
 
-SCALES = (1.5, 5.0, 16.0)  # px, see `SmoothingSpline.smoothed`
+NARROW, WIDE = (1.5, 4.0), (9.0, 20.0, 48.0)  # px, scales of splines smooth in x and y, and of those smooth in their curvature
 MISFIT = 0.4  # of the slack: by how much a spline may miss the bounds of a crossing and still count as fitting
 WINDOW = 3.0  # scales: how far from bounds that are missed a spline fits
 FREE_ENDS = 5.0  # px, the least scale that moves the ends of chains along the frame: short chains there would lose their area
+RING_SCALES = 6.0  # the least number of points of a ring that is smoothed, in scales
+SHORTEST_NARROW, SHORTEST_WIDE = 3, 11  # points: open chains with no more are not smoothed
+UNSMOOTHED = 4  # points that tell where a chain leads that is not smoothed
+AT_BOUND = 1e-9  # what lies so near to a bound lies there, up to rounding
 NO_STEP = 1e-12  # px, a step that changes nothing
 BENDS = 2  # how often a spline is bent towards the bounds it misses
-BEND = 0.75  # of the scale: to how many places on either side a bend reaches
+BEND, MOST_BEND = 0.75, 12.0  # of the scale: and places at most: how far to either side a bend reaches
 AREA_ROUNDS = 8  # of shifting chains for their area; two or three do
 
 
@@ -74,35 +78,74 @@ class BoundedChains:
         return self.slides[self.chains.indices[self.chains.first + 1]]
 
 
-def widest_fitting_spline(s: BoundedChains) -> Floats:
-    """Return the shift of each point (n,) along its axis onto the smoothing spline of the widest scale that fits."""
-    shift, level = np.zeros((len(SCALES) + 1, len(s.points))), np.zeros(len(s.points), np.int64)
-    long = [(np.diff(s.chains.starts) > 6 * scale) & s.movable for scale in SCALES]
-    for k, scale in enumerate(SCALES, start=1):
-        if not long[k - 1].any():
+@dataclass(frozen=True, eq=False)
+class ChainEnds:
+    """Where the splines of chains lead at their two ends, nodes being free.
+
+    Attributes
+    ----------
+    place, direction
+        (c, 2) complex, the end of the spline at the first and at the last node, and its unit direction there.
+    scale
+        (c, 2) float64, px, the scale of the spline; 0 where none fits.
+    """
+
+    place: Points
+    direction: Points
+    scale: Floats
+
+
+def widest_fitting_spline(s: BoundedChains) -> tuple[Floats, ChainEnds]:
+    """Return the shift of each point (n,) along its axis onto the smoothing spline of the widest scale that fits, and where chains lead."""
+    shift, level = np.zeros((len(NARROW + WIDE) + 1, len(s.points))), np.zeros(len(s.points), np.int64)
+    k = 0
+    ends = _unsmoothed_ends(s)
+    size, rings = np.diff(s.chains.starts), s.chains.rings
+    for scales, least in ((NARROW, SHORTEST_NARROW), (WIDE, SHORTEST_WIDE)):
+        chosen = (size > np.where(rings, RING_SCALES * scales[0], least)) & s.movable
+        if not chosen.any():
             break
-        if k == 1 or (long[k - 1] != long[k - 2]).any():
-            # The wider scales of the same chains are served, too.
-            widest = max(other for other, chains in zip(SCALES, long, strict=True) if (chains == long[k - 1]).all())
-            line = PaddedChains(s.chains, long[k - 1], max(PADDING, math.ceil(3 * BEND * widest) + 1))
-            splines = SmoothingSpline(line, line.points(s.points), s.slides)
-        at = line.source
-        off, direction = splines.smoothed(scale)
-        # Slide to the tangent of the spline.
-        axis, low, high = line.sign * s.axis[at], s.low[at], s.high[at]
-        across = cross(axis, direction)
-        steep = np.abs(across) > 1e-9
-        t = np.divide(cross(off, direction), across, out=np.zeros(len(at)), where=steep)[line.original]
-        # How far bounds are missed counts across the spline: along dual edges that run nearly as it does, it says little.
-        missed = np.abs((t - np.clip(t, low, high)) * across) > MISFIT * s.slack[at] * np.abs(axis)
-        fits = farther_than(line, splines.steps, missed & ~line.node, WINDOW * scale)
-        for _ in range(BENDS):
-            miss = np.where(fits & ~line.node, (t - np.clip(t, low, high)) * across, 0)
-            t -= np.divide(fade_out(line, miss, BEND * scale), across, out=np.zeros(len(at)), where=steep)
-        own = at[line.own]
-        shift[k, own] = np.where(line.node & (scale < FREE_ENDS), 0, np.clip(t, low, high))[line.own]
-        level[own[fits[line.own]]] = k
-    return _blend(shift, level, s)
+        line = PaddedChains(s.chains, chosen, max(PADDING, math.ceil(3 * min(BEND * scales[-1], MOST_BEND)) + 2))
+        points = line.points(s.points)
+        narrow = SmoothingSpline(line, points)
+        spline = narrow if scales is NARROW else CurvatureSpline(narrow, NARROW[-1])
+        # Where on the line the two ends of each open chain are.
+        node, opened = np.flatnonzero(line.node).reshape(-1, 2), np.flatnonzero(chosen & ~rings)
+        at, own = line.source, line.source[line.own]
+        for scale in scales:
+            off, direction = spline.smoothed(scale)
+            # Slide to the tangent of the spline.
+            axis, low, high = line.sign * s.axis[at], s.low[at], s.high[at]
+            across = cross(axis, direction)
+            steep = np.abs(across) > 1e-9
+            t = np.divide(cross(off, direction), across, out=np.zeros(len(at)), where=steep)[line.original]
+            # How far bounds are missed counts across the spline: along dual edges that run nearly as it does, it says little.
+            missed = np.abs((t - np.clip(t, low, high)) * across) > MISFIT * s.slack[at] * np.abs(axis)
+            fits = farther_than(line, narrow.steps, missed & ~line.node, WINDOW * scale)
+            fits &= ~line.ring | (size[np.flatnonzero(chosen)[line.chain]] > RING_SCALES * scale)
+            for _ in range(BENDS):
+                miss = np.where(fits & ~line.node, (t - np.clip(t, low, high)) * across, 0)
+                t -= np.divide(fade_out(line, miss, min(BEND * scale, MOST_BEND)), across, out=np.zeros(len(at)), where=steep)
+            k += 1
+            shift[k, own] = np.where(line.node & (scale < FREE_ENDS), 0, np.clip(t, low, high))[line.own]
+            level[own[fits[line.own]]] = k
+            chain, end = np.nonzero(fits[node])
+            there, of = node[chain, end], opened[chain]
+            ends.place[of, end] = (points + off)[there]
+            ends.direction[of, end] = direction[there]
+            ends.scale[of, end] = scale
+    return _blend(shift, level, s), ends
+
+
+def _unsmoothed_ends(s: BoundedChains) -> ChainEnds:
+    """Tell where chains lead as they are: from the crossing beside each node on, as the next few crossings do."""
+    chains, z = s.chains, s.points[s.chains.indices]
+    size = np.diff(chains.starts) - 1
+    inner = np.minimum(UNSMOOTHED, size)
+    beside = np.stack([z[chains.first + 1], z[chains.last - 1]], axis=1)
+    direction = np.stack([z[chains.first + inner] - beside[:, 0], beside[:, 1] - z[chains.last - inner]], axis=1)
+    unit = np.where(direction == 0, 1, direction) / np.maximum(np.abs(direction), 1e-12)
+    return ChainEnds(beside, unit, np.zeros(beside.shape))
 
 
 def _blend(shift: Floats, level: Ints, s: BoundedChains) -> Floats:
@@ -112,8 +155,12 @@ def _blend(shift: Floats, level: Ints, s: BoundedChains) -> Floats:
     kernel = np.array([1.0, 8, 28, 56, 70, 56, 28, 8, 1]) / 256
     line = PaddedChains(s.chains, s.movable, len(kernel) // 2)
     at, result = line.source[line.own], np.zeros(shift.shape[1])
+    # A node has no scale of its own: in each chain that of the crossing beside it.
+    own_level, node = level[line.source], np.flatnonzero(line.node)
+    own_level[node] = own_level[np.where(line.own[node + 1], node + 1, node - 1)]
+    own_level = own_level[line.original]
     for k in range(1, len(shift)):
-        share = np.convolve((level[line.source] == k).astype(np.float64), kernel, "same")
+        share = np.convolve((own_level == k).astype(np.float64), kernel, "same")
         result[at] += share[line.own] * shift[k, at]
     return np.clip(result, s.low, s.high)
 
@@ -131,7 +178,7 @@ def restore_swept_areas(s: BoundedChains, shift: Floats, wanted: Floats) -> Floa
         width = cross(s.axis[at], ahead - behind) / 2
         missing = wanted - swept_areas(moved, s)
         # A point at one of its bounds may still go back.
-        free = np.where(missing[chain] * width > 0, shift[at] < s.high[at], s.low[at] < shift[at])
+        free = np.where(missing[chain] * width > 0, shift[at] < s.high[at] - AT_BOUND, s.low[at] + AT_BOUND < shift[at])
         free[ring_end] = False
         gain = np.bincount(chain, np.abs(width) * free, len(wanted))
         step = np.divide(missing, gain, out=np.zeros_like(gain), where=gain > 0.1)

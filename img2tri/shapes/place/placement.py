@@ -2,7 +2,7 @@
 
 Any place within the bounds is right as far as topology goes (see `dual_edges`), so all places can be chosen well: by the gray values
 where there are any (`iso_crossings`), exactly at corners (`corners`), and by smoothing along the arc within what these leave open
-(`constrained_smoothing`).
+(`constrained_smoothing`); nodes where the chains that meet there lead (`node_placement`).
 """
 
 from __future__ import annotations
@@ -17,11 +17,10 @@ from img2tri.arrays import Floats, Points, cross
 from img2tri.shapes.place.constrained_smoothing import BoundedChains, restore_swept_areas, swept_areas, widest_fitting_spline
 from img2tri.shapes.place.corners import find_corners
 from img2tri.shapes.place.known_crossings import OutlineLevel, known_crossings
+from img2tri.shapes.place.node_placement import bend_to_nodes, meeting_places
 from img2tri.shapes.trace.crack_edges import CrackEdges
 from img2tri.shapes.trace.dual_edges import BOUND, DualEdges, cut_chains, lay_out
 from img2tri.types import ColourMix, Frame, Outlines
-
-NODE_PASSES = 4  # of averaging along the chains, after which each node is put where they lead
 
 
 def place_outlines(
@@ -55,16 +54,17 @@ def place_outlines(
     if corners and len(bends):
         dual_edges = cut_chains(dual_edges, bends, frame)
         shift, slack = known_crossings(dual_edges, frame, gray, level)
-    points = _place_nodes(dual_edges)
+    points, movable = dual_edges.middle.copy(), dual_edges.bounds != 0
     if corners:
-        points[len(dual_edges.crossed) + np.searchsorted(dual_edges.node_corner, at)] = sharp
-    bounded = _bounded(dual_edges, points, shift, slack)
-    free = _with_free_ends(bounded, dual_edges)
-    shift = widest_fitting_spline(free)
-    # From here on the nodes on the frame stay, too.
-    ends = bounded.axis != free.axis
-    points[ends] += (shift * free.axis)[ends]
-    bounded, shift = replace(bounded, points=np.where(ends, points, bounded.points)), np.where(ends, 0.0, shift)
+        node = len(dual_edges.crossed) + np.searchsorted(dual_edges.node_corner, at)
+        points[node], movable[node] = sharp, False
+    bounded = _with_free_ends(_bounded(dual_edges, points, shift, slack), dual_edges)
+    shift, ends = widest_fitting_spline(bounded)
+    # From here on the nodes on the frame stay where they slid to, and all others where their chains lead.
+    nodes = np.where(dual_edges.slides, bounded.points, bounded.points + shift * bounded.axis)
+    nodes = meeting_places(replace(bounded, points=nodes), ends, movable, dual_edges.bounds)
+    bounded = replace(bounded, points=nodes, axis=dual_edges.vector)
+    shift = bend_to_nodes(bounded, np.where(dual_edges.slides, shift, 0.0), ends, dual_edges.bounds != 0)
     shift = restore_swept_areas(bounded, shift, _wanted_areas(bounded, dual_edges, slack))
     return dual_edges.outlines(bounded.points + shift * dual_edges.vector), dual_edges
 
@@ -96,27 +96,6 @@ def _wanted_areas(s: BoundedChains, dual_edges: DualEdges, slack: Floats) -> Flo
     detour = cross(corner[one] - s.points[one], s.points[other] - s.points[one]) / 2
     unknown = (slack[one] == BOUND) & (slack[other] == BOUND) & (np.diff(dual_edges.chains.chain) == 0)
     return np.asarray(swept_areas(s.points, s) + np.bincount(dual_edges.chains.chain[:-1], detour * unknown, len(dual_edges.chains.rings)))
-
-
-def _place_nodes(dual_edges: DualEdges) -> Points:
-    """Move each node to where the chains that meet there lead, within its block."""
-    z, chains, at = dual_edges.middle.copy(), dual_edges.chains, dual_edges.chains.indices
-    bounds, movable = dual_edges.bounds, dual_edges.bounds != 0
-    if not movable.any():
-        return z
-    ends = np.concatenate([chains.first[~chains.rings], chains.last[~chains.rings]])
-    beside = at[ends + np.repeat([1, -1], len(ends) // 2)]
-    meeting = np.maximum(np.bincount(at[ends], minlength=len(z)), 1)
-    inner = np.ones(len(at), bool)
-    inner[chains.first] = inner[chains.last] = False
-    inner = np.flatnonzero(inner)
-    for _ in range(NODE_PASSES):
-        mean = (np.bincount(at[ends], z[beside].real, len(z)) + 1j * np.bincount(at[ends], z[beside].imag, len(z))) / meeting
-        z[at[inner]] = (z[at[inner - 1]] + 2 * z[at[inner]] + z[at[inner + 1]]) / 4
-        off = mean - dual_edges.middle
-        off = np.clip(off.real, -bounds.real, bounds.real) + 1j * np.clip(off.imag, -bounds.imag, bounds.imag)
-        z[movable] = (dual_edges.middle + off)[movable]
-    return np.where(movable, z, dual_edges.middle)
 
 
 def place_on_pixel_sides(crack_edges: CrackEdges, frame: Frame) -> tuple[Outlines, DualEdges]:

@@ -64,7 +64,7 @@ def test_chords_on_a_disc_lose_what_theory_says():
 @pytest.mark.parametrize("name", SMOOTH)
 def test_after_some_rounds_the_areas_are_kept(name, spacing, most):
     d = settled(SMOOTH[name], spacing)
-    if name in ("disc", "blob"):
+    if name in ("disc", "blob") and spacing < 40:
         most = min(most, 1e-3)
     assert area_errors(preserved(d)).max() <= most
     assert area_errors(preserved(d, 1)).max() <= max(4 * most, area_errors(d).max() / 5)
