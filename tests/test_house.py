@@ -56,7 +56,7 @@ LIBRARIES = {
     "app": {"starlette", "uvicorn", "anywidget", "traitlets", "matplotlib"},
     "mesh_exports": {"skfem", "shapely", "trimesh", "pyvista"},  # for types only
     "mesh": {"matplotlib"},  # for types only
-    "cli": {"rich"},
+    "cli": {"rich", "distributed"},
 }
 HEAVY = {"cv2", "PIL", "tifffile", "scipy", "shapely", "igl", "pythoncdt", "trimesh", "pyvista", "vtkmodules", "matplotlib", "rich"}
 HEAVY |= {"starlette", "uvicorn", "anywidget", "zarr", "h5py", "dask", "distributed"}

@@ -14,10 +14,11 @@ from img2tri import __version__
 from img2tri.cli.app_command import add_app
 from img2tri.cli.option_arguments import add_mesh_options
 from img2tri.cli.save_arguments import add_save_options
+from img2tri.cli.tiles_command import add_tiles
 from img2tri.options.table import nearest
 from img2tri.options.typed import whole_number
 
-COMMANDS = ("mesh", "view-report", "quality", "app")
+COMMANDS = ("mesh", "tiles", "view-report", "quality", "app")
 LABEL = r"(-?\d+|0x[\da-fA-F]+|#[\da-fA-F]{6})"
 LABELS = rf"{LABEL}(,{LABEL})*"
 OPEN = {"--labels": LABELS, "--fill-holes": r"[\d.]+(px2)?"}  # options that mean all without a value, and what their values look like
@@ -30,6 +31,7 @@ EXAMPLES = """examples:
   img2tri mesh scans/*.png -o "meshes/{stem}.ply" --report "reports/{stem}.json"
   cat femur.png | img2tri mesh - -o - --format stl > femur.stl
   img2tri view-report femur.png -o femur.html --edge-length 8
+  img2tri tiles slide.zarr -o slide.pvtu --workers 4
   img2tri app femur.png
   img2tri quality femur.stl
 """
@@ -144,6 +146,7 @@ def _parser() -> ArgumentParser:
     page.add_argument("-o", "--output", required=True, metavar="PAGE", help=".html, or - for stdout")
     page.add_argument("--quiet", action="store_true", help="print errors only")
     add_mesh_options(page)
+    add_tiles(commands)
     add_app(commands)
     quality = commands.add_parser("quality", help="judge meshes", description=QUALITY, formatter_class=_formatter, allow_abbrev=False)
     quality.add_argument("meshes", nargs="+", metavar="MESH", help=".stl, .ply, .obj, .off, .glb, .vtp, .vtu, .msh or .bdf; - for stdin")

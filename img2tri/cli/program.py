@@ -1,4 +1,4 @@
-"""The command line: ``img2tri mesh``, ``view-report``, ``app`` and ``quality``, put together from its parts in `img2tri.cli`.
+"""The command line: ``img2tri mesh``, ``tiles``, ``view-report``, ``app`` and ``quality``, put together from its parts in `img2tri.cli`.
 
 Options go to `img2tri.mesh_image` under the names it knows, and only if they were given, so its defaults and its checks are the only
 ones. Whatever is not as it must be becomes one line on stderr and exit status 2; one bad file does not stop the others. Nothing heavy is
@@ -24,6 +24,7 @@ from img2tri.cli.job import Job
 from img2tri.cli.meshing_job import about, mesh_of, problem, view
 from img2tri.cli.printing import Bar, complain, flush, tell, tell_failures, tell_outcome
 from img2tri.cli.stdin_stdout import DASH, abandon_stdout, check_stdin, check_stdout, to_stdout
+from img2tri.cli.tiles_command import run_tiles
 from img2tri.cli.workers import run
 from img2tri.errors import Img2triError, integer
 
@@ -55,6 +56,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         if arguments.command == "app":
             status = run_app(arguments)
+        elif arguments.command == "tiles":
+            status = run_tiles(arguments)
         elif arguments.command == "view-report":
             status = _view_report(arguments, typed)
         else:
