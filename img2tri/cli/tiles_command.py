@@ -10,11 +10,11 @@ from typing import Any
 
 from img2tri.cli.file_names import mesh_options
 from img2tri.cli.option_arguments import add_mesh_options
-from img2tri.cli.printing import Bar, tell
+from img2tri.cli.printing import Bar, complain, tell
 from img2tri.errors import ParameterError, integer
 from img2tri.options.typed import whole_number
 
-ABOUT = """Mesh one image larger than memory, in parts: zarr, .npy, HDF5 or tiled TIFF to
+TILES = """Mesh one image larger than memory, in parts: zarr, .npy, HDF5 or tiled TIFF to
 mesh.zarr, mesh.pvtu or mesh.vtkhdf. The mesh is the same whatever --tile and the
 number of workers. A run that was stopped is continued by the same command.
 Needs img2tri[dask].
@@ -27,7 +27,7 @@ def add_tiles(commands: Any) -> None:
         "tiles",
         help="mesh one image larger than memory",
         usage="img2tri tiles IMAGE -o MESH [options]",
-        description=ABOUT,
+        description=TILES,
         formatter_class=RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
@@ -60,6 +60,8 @@ def run_tiles(arguments: Namespace) -> int:
                 f"{'saved':<12}{arguments.output}",
             ]
         )
+    for warning in made.report["warnings"]:
+        complain(warning)
     return 0
 
 

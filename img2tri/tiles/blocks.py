@@ -57,7 +57,8 @@ def _fitting(plan: Plan, source: PixelSource, folder: Path, cell: Cell) -> tuple
     problem: SeamError | None = None
     for scale in MARGIN_SCALES:
         rows, columns = plan.window(cell, scale * plan.margin + SMOOTHED)
-        mesh, outlines = window_mesh(source.read(rows, columns), plan, rows, columns)
+        values = source.read(rows, columns)
+        mesh, outlines = window_mesh(values, plan, rows, columns)
         off, territory = _measure(outlines), plan.territory(cell, scale)
         try:
             piece, replaced = merge(mesh, finished, territory, off, tolerance=within, min_angle=plan.options["min_angle"])
@@ -73,7 +74,13 @@ def _fitting(plan: Plan, source: PixelSource, folder: Path, cell: Cell) -> tuple
             first += len(old.triangles)
             if gone.any():
                 lost[lost_name(other)] = numbers[gone]
-        facts = {"cell": list(cell), "scale": scale, "replaced": int(replaced.sum()), "distance": distance}
+        facts = {
+            "cell": list(cell),
+            "scale": scale,
+            "replaced": int(replaced.sum()),
+            "distance": distance,
+            **_pixels(values, plan, cell, rows, columns),
+        }
         return piece, lost, facts
     assert problem is not None, "there is a scale"
     at = f" at {as_rows(plan_world(plan, problem.at[:1]))[0].round(2).tolist()}" if len(problem.at) else ""
@@ -81,6 +88,24 @@ def _fitting(plan: Plan, source: PixelSource, folder: Path, cell: Cell) -> tuple
         f"the mesh of this block and those of its neighbours could not be joined{at}: {problem}; "
         "try another edge_length or tolerance, or mesh_image(..., crop=) for the parts"
     ) from problem
+
+
+def _pixels(values: NDArray[Any], plan: Plan, cell: Cell, rows: slice, columns: slice) -> dict[str, Any]:
+    """Count what the certificate of the whole is to be compared with: pixels, and the Euler number of a mask, by bit quads (Gray 1971)."""
+    own = plan.window(cell, 0)
+    (h, w), top, left = ((s.stop - s.start for s in own), own[0].start - rows.start, own[1].start - columns.start)
+    zones = segmentation(values[top : top + h + 1, left : left + w + 1], plan)
+    if plan.options["labels"]:
+        meshed = zones.labels != zones.background if zones.background is not None else np.ones(zones.labels.shape, bool)
+        return {"pixels": int(meshed[:h, :w].sum()), "euler": None}
+    m = np.asarray(zones.labels, bool)
+    across, down = m[:h, :-1] & m[:h, 1:], m[:-1, :w] & m[1:, :w]
+    a, b, c, d = m[:-1, :-1], m[:-1, 1:], m[1:, :-1], m[1:, 1:]
+    quads = int((a & b & c & d).sum())
+    if plan.options["connectivity"] == 8:
+        quads -= int(((a & d & ~b & ~c) | (b & c & ~a & ~d)).sum())
+    pixels = int(m[:h, :w].sum())
+    return {"pixels": pixels, "euler": pixels - int(across.sum()) - int(down.sum()) + quads}
 
 
 def _measure(outlines: tuple[Points, Outlines] | None) -> Callable[[Points, Ints], Floats]:

@@ -11,6 +11,7 @@ Pieces are kept beside the output while the work is under way. A second run goes
 from __future__ import annotations
 
 import json
+import math
 import os
 import shutil
 from collections.abc import Callable, Iterator
@@ -26,13 +27,14 @@ from img2tri.options.table import plain
 from img2tri.tiles.blocks import mesh_block
 from img2tri.tiles.numbering import Seam, global_numbers, numbered_vertices
 from img2tri.tiles.outputs import FORMATS, Part, save_parts
-from img2tri.tiles.pieces import Piece, join_pieces
+from img2tri.tiles.pieces import Piece, Sides, join_pieces
 from img2tri.tiles.plans import Cell, Plan, colour
 from img2tri.tiles.sources import open_source
 from img2tri.tiles.storage import load_piece, write
 from img2tri.tiles.survey import decided, fingerprint, first_plan, look
 from img2tri.triangles.angles import smallest_angles
 
+MOST_AREA_ERROR, FEW_PIXELS = 0.01, 16  # of the whole, but of no fewer pixels, as in the certificate of a mesh in memory
 TilesProgress = Callable[[str, float], object]
 
 
@@ -47,7 +49,8 @@ class TiledMesh:
     n_vertices, n_triangles, n_parts
         Counts; a vertex on a seam counts once.
     report
-        What is known of the whole, as plain data: options, counts, the worst angle, areas, the farthest edge from the outlines, seams.
+        What is known of the whole, as plain data: options, counts, the worst angle, areas, the farthest edge from the outlines, seams,
+        components less holes of a mask; `warnings` has one line for each promise that is not kept.
     """
 
     path: Path
@@ -145,7 +148,7 @@ def mesh_tiles(
         "options": plain(plan.options), "level": plan.level, "source": image.name, "shape": plan.frame.shape, "block": plan.block,
         "n_vertices": total, "n_triangles": 0, "seam_edges": sum(len(seam.edges) for seam in seams) // 2, "smallest_angle": 180.0,
         "narrow": 0, "distance": max(f["distance"] for f in facts.values()) * plan.frame.pixel,
-        "replaced": sum(f["replaced"] for f in facts.values()), "areas": {},
+        "replaced": sum(f["replaced"] for f in facts.values()), "areas": {}, "boundary_edges": 0,
     }  # fmt: skip
     count = 0
 
@@ -159,6 +162,7 @@ def mesh_tiles(
                 numbers.append(global_numbers(seams[k].count, seams[k].numbers, *numbers_of[k]))
             count += 1
             yield _part(name, pieces, [np.asarray(n) for n in numbers], plan, report)
+        _judge(report, list(facts.values()), plan)
 
     save_parts(target, parts(), report)
     shutil.rmtree(folder)
@@ -240,9 +244,32 @@ def _part(name: str, pieces: list[Piece], numbers: list[Any], plan: Plan, report
     area = ((b - a).conj() * (c - a)).imag / 2 * plan.frame.pixel**2
     angles = smallest_angles(piece.vertices, piece.triangles)
     report["n_triangles"] += len(piece.triangles)
+    report["boundary_edges"] += len(Sides.of(piece.triangles, len(piece.vertices)).bare()[0]) - len(piece.seam)
     report["smallest_angle"] = min(report["smallest_angle"], float(angles.min(initial=180.0)))
     report["narrow"] += int((angles < plan.options["min_angle"] - 1e-9).sum())
     labels, which = np.unique(piece.regions, return_inverse=True)
     for label, found in zip(labels.tolist(), np.bincount(which, area, len(labels)).tolist(), strict=True):
         report["areas"][label] = report["areas"].get(label, 0.0) + found
     return Part(name, plan.frame.world(as_rows(piece.vertices)), piece.triangles, piece.regions, number)
+
+
+def _judge(report: dict[str, Any], facts: list[dict[str, Any]], plan: Plan) -> None:
+    """Compare the whole with the image, and warn of each promise that is not kept."""
+    frame, warnings = plan.frame, []
+    image, mesh = sum(f["pixels"] for f in facts) * math.prod(frame.spacing), sum(report["areas"].values())
+    report["area"] = {"mesh": mesh, "image": image, "error": mesh / image - 1}
+    if not plan.options["labels"]:
+        # Components less holes: vertices - edges + triangles.
+        edges = (3 * report["n_triangles"] + report["boundary_edges"]) // 2
+        report["euler"] = {"mesh": report["n_vertices"] - edges + report["n_triangles"], "image": sum(f["euler"] for f in facts)}
+        if report["euler"]["mesh"] != report["euler"]["image"]:
+            warnings.append(f"components less holes: {report['euler']['mesh']}, expected {report['euler']['image']}")
+    if report["distance"] > plan.options["tolerance"] * (1 + 1e-9):
+        warnings.append(f"the mesh is {report['distance']:.4g} off the outlines, tolerance {plan.options['tolerance']:.4g}")
+    if report["narrow"]:
+        warnings.append(
+            f"{report['narrow']} triangles below {plan.options['min_angle']:g} degrees, the worst {report['smallest_angle']:.4g}"
+        )
+    if abs(report["area"]["error"]) > MOST_AREA_ERROR and sum(f["pixels"] for f in facts) > FEW_PIXELS:
+        warnings.append(f"the area is off by {100 * report['area']['error']:.2g} %")
+    report["warnings"] = warnings

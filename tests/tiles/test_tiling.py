@@ -36,6 +36,7 @@ def judged(image, folder, **options):
     assert report.warnings == [], report.warnings
     assert made.n_vertices == len(vertices)
     assert made.n_triangles == len(triangles)
+    assert made.report["warnings"] == []
     assert made.report["smallest_angle"] >= 30
     assert made.report["distance"] <= 0.5 * (1 + 1e-6)
     return made, (vertices, triangles, regions)
