@@ -11,7 +11,7 @@
                                          wording            messages in the words of the command line
 
 `job` has the records these hand to each other, `stdin_stdout` has stdin and stdout as files; `app_command` starts the
-app; `tiles_command` meshes one image larger than memory; `program` puts the parts together.
+app; `commands` has ``img2tri tiles``; `program` puts the parts together.
 """
 
 from __future__ import annotations

@@ -18,13 +18,13 @@ from functools import partial
 
 from img2tri.cli.app_command import run_app
 from img2tri.cli.arguments import parse
+from img2tri.cli.commands.tiles_command import run_tiles
 from img2tri.cli.file_names import folders, jobs_of, mesh_options, suffix_of_stdin
 from img2tri.cli.inputs import expanded
 from img2tri.cli.job import Job
 from img2tri.cli.meshing_job import about, mesh_of, problem, view
 from img2tri.cli.printing import Bar, complain, flush, tell, tell_failures, tell_outcome
 from img2tri.cli.stdin_stdout import DASH, abandon_stdout, check_stdin, check_stdout, to_stdout
-from img2tri.cli.tiles_command import run_tiles
 from img2tri.cli.workers import run
 from img2tri.errors import Img2triError, integer
 
