@@ -16,9 +16,7 @@ from img2tri.arrays import Bools, Floats, Ints, Points, as_rows, independent
 from img2tri.triangles.generate.pslg import Pslg
 
 CROWDED = 0.68  # two points nearer than this times the wanted edge length are one too many
-SPAN = (
-    0.3  # lengths of a class, over its longest; classes begin at halves, and so overlap by a factor of 0.5 / SPAN, no more than costs time
-)
+SPAN = 0.3  # lengths of a class, over its longest; classes begin at halves, so that they overlap: anything below a half serves
 
 
 def apexes(pslg: Pslg, wanted: Floats) -> tuple[Points, Floats]:

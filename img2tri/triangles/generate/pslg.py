@@ -7,6 +7,7 @@ none is much longer than the size function asks. The term is that of F. P. Prepa
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -39,18 +40,18 @@ class Pslg:
     right: Ints
     origin: Ints
 
-    @property
+    @cached_property
     def ends(self) -> tuple[Points, Points]:
         """First and last point of each segment."""
         return self.points[self.segments[:, 0]], self.points[self.segments[:, 1]]
 
-    @property
+    @cached_property
     def middles(self) -> Points:
         """Middle of each segment."""
         start, stop = self.ends
         return (start + stop) / 2
 
-    @property
+    @cached_property
     def lengths(self) -> Floats:
         """Length of each segment."""
         start, stop = self.ends
@@ -64,7 +65,7 @@ class Pslg:
         From either end to the middle the wanted length is taken as linear, from a to b. Then a stretch of length l holds
         l log(b / a) / (b - a) wanted lengths, and parts of equal share grow in geometric progression.
         """
-        at_points, at_middles = sizes.at(self.points), sizes.at(self.middles)
+        at_points, at_middles = np.split(sizes.at(np.concatenate([self.points, self.middles])), [len(self.points)])
         first, last = at_points[self.segments].T
         half = self.lengths / 2
         first_share, last_share = half / _log_mean(first, at_middles), half / _log_mean(last, at_middles)
@@ -87,8 +88,8 @@ class Pslg:
         divided = Pslg(np.concatenate([self.points, points]), segments, self.left[of], self.right[of], self.origin[of])
         at_middles = at_middles[of]
         changed = np.flatnonzero(parts[of] > 1)
-        at_middles[changed] = sizes.at(divided.middles[changed])
-        return divided, np.concatenate([at_points, sizes.at(points)]), at_middles
+        at_new, at_middles[changed] = np.split(sizes.at(np.concatenate([points, divided.middles[changed]])), [len(points)])
+        return divided, np.concatenate([at_points, at_new]), at_middles
 
     def slide_lines(self, limits: Floats) -> SlideLines:
         """Let the first points slide parallel to the line between their neighbours, within limits; but not where segments were divided."""
