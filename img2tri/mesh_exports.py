@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from img2tri import __version__
 from img2tri.arrays import Floats, Ints
-from img2tri.errors import MeshError, ParameterError, choice
+from img2tri.errors import MeshError, ParameterError, choice, finite
 from img2tri.types import Frame, Provenance
 
 if TYPE_CHECKING:
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from trimesh import Scene, Trimesh
 
     from img2tri.recipes.second_order import SecondOrder
+    from img2tri.views.objects.base_plate import Base
     from img2tri.views.objects.sets.named_sets import Sets
     from img2tri.views.objects.solver_cells import Cells
 
@@ -62,19 +63,23 @@ class MeshExports:
         (left, bottom), (right, top) = self.vertices.min(axis=0).tolist(), self.vertices.max(axis=0).tolist()
         return left, bottom, right, top
 
-    def to_trimesh(self, height: float | Mapping[int, float] | None = None, *, split: bool = False) -> Trimesh | Scene:
+    def to_trimesh(
+        self, height: float | Mapping[int, float] | None = None, *, split: bool = False, base: float | None = None
+    ) -> Trimesh | Scene:
         """Return a ``trimesh.Trimesh`` at z = 0, or with `height` (world units) the closed solid from z = 0 to z = height.
 
-        Face attributes: ``region`` and ``q``. With `split` (and a height), a ``trimesh.Scene`` with a closed body for each region;
+        Face attributes: ``region`` and ``q``. A `height` for each label makes one closed body of several heights; `base`, world units,
+        adds a plate below that joins loose parts. With `split` (and a height), a ``trimesh.Scene`` with a closed body for each region;
         neighbours share their walls.
         """
         if split:
             from img2tri.views.objects.body_per_region import to_scene
 
-            return to_scene(self.vertices, self.triangles, self.regions, height=height, names=self.names, **self._data())
+            about = {"names": self.names, "colours": self._colours(), "base": self._base(base), **self._data()}
+            return to_scene(self.vertices, self.triangles, self.regions, height=height, **about)
         from img2tri.views.objects.to_trimesh import to_trimesh
 
-        return to_trimesh(self.vertices, self.triangles, self.regions, height=height, **self._data())
+        return to_trimesh(self.vertices, self.triangles, self.regions, height=height, base=self._base(base), **self._data())
 
     def to_pyvista(
         self,
@@ -84,6 +89,7 @@ class MeshExports:
         layers: int = 1,
         order: int = 1,
         cells: str | None = None,
+        base: float | None = None,
     ) -> PolyData | UnstructuredGrid:
         """Return a ``pyvista.PolyData`` at z = 0, or with `height` (world units) the closed surface from z = 0 to z = height.
 
@@ -102,7 +108,7 @@ class MeshExports:
             raise ParameterError(f"cells: expected to be left out without solid=True, found {cells!r}")
         from img2tri.views.objects.to_pyvista import to_pyvista
 
-        return to_pyvista(self.vertices, self.triangles, self.regions, height=height, **self._data())
+        return to_pyvista(self.vertices, self.triangles, self.regions, height=height, base=self._base(base), **self._data())
 
     def sets(self) -> Sets:
         """Name the parts: regions, sides of the frame, outer boundary, holes, interfaces ``A__B``, and pieces such as ``left_1``."""
@@ -129,6 +135,7 @@ class MeshExports:
         order: int = 1,
         cells: str | None = None,
         data: Mapping[str, ArrayLike] | None = None,
+        base: float | None = None,
         version: str | None = None,
         deck: bool | None = None,
         plane: str | None = None,
@@ -142,7 +149,10 @@ class MeshExports:
             For printing and looking at: .stl, .ply, .obj, .off, .3mf, .glb, .vtp, .vtu. For solvers, with named sets: .msh, .inp,
             .bdf, .xdmf, .mesh, .vtu, .vtkhdf. The outlines of the image: .svg, .dxf, .geojson. A page to look at: .html.
         height
-            World units: write a solid from z = 0 to there, closed surfaces for printing, wedges for solvers.
+            World units: write a solid from z = 0 to there, closed surfaces for printing, wedges for solvers. For printing also label ->
+            height of each region.
+        base
+            World units, for printing: the thickness of a plate below the solid, which joins loose parts; the solid stands on it.
         layers, order, cells
             For solvers: layers of wedges; 2 for quadratic elements; "tetrahedra" for these instead of wedges.
         data
@@ -165,6 +175,8 @@ class MeshExports:
         whole = suffix == ".vtu" and height is not None and layers is None and cells is None and order == 1
         if suffix in EXPORTS and not whole:
             made = self._cells(height, layers or 1, order, cells, data=data, quality=suffix in (".vtu", ".vtkhdf"))
+            if base is not None:
+                raise ParameterError(f"base: expected to be left out for {suffix} with cells, found {base!r}; it is for closed surfaces")
             export(path, made, version=version, deck=deck, plane=plane)
             return
         given: dict[str, Any] = {
@@ -179,7 +191,7 @@ class MeshExports:
             if value is not None:
                 raise ParameterError(f"{name}: expected to be left out for {suffix}, found {value!r}; it is for {', '.join(EXPORTS)}")
         if suffix == ".html" or suffix in vectors.DRAWING_FORMATS:
-            drawn: dict[str, Any] = {"height": height, "data": data}
+            drawn: dict[str, Any] = {"height": height, "data": data, "base": base}
             for name, value in drawn.items():
                 if value is not None:
                     raise ParameterError(f"{name}: expected None for {suffix}, which is a drawing, found {value!r}")
@@ -187,9 +199,11 @@ class MeshExports:
             save_page(self, path, image)
         elif suffix in vectors.DRAWING_FORMATS:
             about = {"bounds": self._bounds(), "upward": self.frame.upward, "field_data": self._data()["field_data"]}
+            about["colours"] = self._colours()
             vectors.save_outlines(path, self.outlines(), names=self.names, **about)
         else:
-            save(path, self.vertices, self.triangles, self.regions, height=height, names=self.names, **self._data(data=data))
+            about = {"names": self.names, "colours": self._colours(), "base": self._base(base), **self._data(data=data)}
+            save(path, self.vertices, self.triangles, self.regions, height=height, **about)
 
     def _cells(
         self,
@@ -224,6 +238,16 @@ class MeshExports:
         points, rows, _ = wedges(nodes[:n], self.triangles, height=height, layers=layers, order=order, z=self.frame.z, middles=middles)
         solid = solid_cells(flat, points, rows)
         return tetrahedra(solid) if shape == "tetrahedra" else solid
+
+    def _colours(self) -> dict[int, tuple[int, int, int]]:
+        """Return the colours the image has for its labels, as far as it has any."""
+        return self.origin.colours if self.origin else {}
+
+    def _base(self, thickness: float | None) -> Base | None:
+        """Return the plate below a solid: under the image, or where that is not known, the mesh."""
+        from img2tri.views.objects.base_plate import Base
+
+        return None if thickness is None else Base(finite("base", thickness, above=0), self._bounds() or self.bounds)
 
     def _bounds(self) -> tuple[float, float, float, float] | None:
         """Return the frame of the image, if the mesh has one."""

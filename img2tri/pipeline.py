@@ -21,6 +21,7 @@ from img2tri.raster.decisions import decisions
 from img2tri.raster.in_memory.image_hash import image_hash
 from img2tri.raster.labels.cropping import crop
 from img2tri.raster.labels.forewarnings import forewarnings
+from img2tri.raster.labels.label_maps import label_colours
 from img2tri.raster.labels.otsu_threshold import Level
 from img2tri.raster.labels.segmentation import Segmentation, segment, without_specks
 from img2tri.raster.reading import read
@@ -114,6 +115,7 @@ def mesh_image(image: Any, *, progress: Callable[[str, float], None] | None = No
             o["recipe"], kept, kept | _chosen(o, picture, zones, sizes, within), outlines, *pixels_beside(dual_edges),
             areas=pixel_areas(dual_edges) if zones.gray is None else enclosed_areas(outlines),  # gray values may place the outlines
             counted={**made.counted, "removed": {**removed, **zones.counted}}, notes=[*decisions(picture, zones), *warned],
+            colours=label_colours(picture, outlines.labels) if o["labels"] else {},
             tolerance=within if o["recipe"] == "conforming" else None, min_angle=o["min_angle"] if o["recipe"] == "conforming" else None,
         ),
     )  # fmt: skip

@@ -272,6 +272,7 @@ class Provenance:
     min_angle: float | None = None
     counted: dict[str, Any] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
+    colours: dict[int, tuple[int, int, int]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)

@@ -47,7 +47,7 @@ LIBRARIES = {
     "raster": {"cv2", "PIL", "tifffile", "pydicom", "nibabel", "scipy", "h5py", "zarr"},  # scipy joins runs of pixels to components
     "shapes": {"shapely", "scipy", "cv2"},  # cv2 measures distances to the places where lengths are given
     "triangles": {"scipy", "igl", "pythoncdt", "shapely"},
-    "views": {"skfem", "trimesh", "pyvista", "vtkmodules", "matplotlib", "PIL"},  # PIL writes the pictures of pages
+    "views": {"shapely", "skfem", "trimesh", "pyvista", "vtkmodules", "matplotlib", "PIL"},  # PIL writes the pictures of pages
     "paper": {"cv2", "pythoncdt", "scipy", "shapely"},  # cv2 traces its contours
     "recipes": {"scipy"},
     "certificate": {"shapely", "scipy"},

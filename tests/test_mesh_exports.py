@@ -177,3 +177,54 @@ def test_periodic_meshes_pair_their_nodes(tmp_path):
     assert "*NODE, NSET=PERIODIC_X" in text
     tied = [line.split(", ")[:2] for line in text.splitlines() if ", 1., " in line]
     assert len(set(map(tuple, tied))) == len(tied)  # no displacement is tied twice
+
+
+def test_a_base_joins_loose_parts_in_one_closed_body(tmp_path):
+    y, x = np.mgrid[:60, :80]
+    image = (np.hypot(x - 20, y - 30) < 15) & ~(np.hypot(x - 20, y - 30) < 7) | ((x > 50) & (x < 70))
+    mesh = mesh_image(image, edge_length=4)
+    solid = mesh.to_trimesh(3, base=2)
+    assert solid.is_watertight
+    assert solid.body_count == 1
+    assert mesh.to_trimesh(3).body_count == 2
+    plate = (80 + 4) * (60 + 4) * 2  # it reaches beyond the image by its thickness
+    assert solid.volume == pytest.approx(plate + 3 * mesh.area)
+    bodies = mesh.to_trimesh({1: 3}, split=True, base=2).geometry
+    assert {name: body.is_watertight for name, body in bodies.items()} == {"base": True, "region_1": True}
+    assert bodies["base"].volume == pytest.approx(plate)
+    assert bodies["region_1"].bounds[:, 2].tolist() == [2, 5]
+    for suffix in (".stl", ".3mf", ".glb", ".ply", ".vtp"):
+        mesh.save(tmp_path / f"a{suffix}", 3, base=2)
+    assert pv.read(tmp_path / "a.stl").n_open_edges == 0
+    with pytest.raises(ParameterError, match="base: expected a height too"):
+        mesh.save(tmp_path / "b.stl", base=2)
+    with pytest.raises(ParameterError, match="base: expected to be left out for .msh"):
+        mesh.save(tmp_path / "b.msh", 3, base=2)
+
+
+def test_files_have_the_colours_of_the_image(tmp_path):
+    import trimesh
+
+    image = np.zeros((20, 30, 3), np.uint8)
+    image[2:18, 2:15], image[2:18, 15:28] = (220, 40, 40), (40, 160, 220)
+    mesh = mesh_image(image, labels=True, edge_length=5)
+    assert mesh.origin.colours == {0xDC2828: (220, 40, 40), 0x28A0DC: (40, 160, 220)}
+    mesh.save(tmp_path / "a.svg")
+    assert 'fill="#dc2828"' in (tmp_path / "a.svg").read_text()
+    mesh.save(tmp_path / "a.glb", 2)
+    scene = trimesh.load_scene(tmp_path / "a.glb", process=False)
+    shown = {tuple(body.visual.material.baseColorFactor[:3].tolist()) for body in scene.geometry.values()}
+    assert shown == {(220, 40, 40), (40, 160, 220)}
+    assert all(trimesh.Trimesh(body.vertices, body.faces).is_watertight for body in scene.geometry.values())
+    mesh.save(tmp_path / "a.3mf", 2)
+    import zipfile
+
+    model = zipfile.ZipFile(tmp_path / "a.3mf").read("3D/3dmodel.model").decode()
+    assert '<m:color color="#DC2828"/>' in model
+    palette = np.arange(20 * 30).reshape(20, 30) % 30 // 15 + 1
+    from PIL import Image
+
+    with_palette = Image.fromarray(palette.astype(np.uint8))
+    with_palette.putpalette([0, 0, 0, 250, 10, 10, 10, 250, 10])
+    with_palette.save(tmp_path / "a.png")
+    assert mesh_image(tmp_path / "a.png", labels=True).origin.colours == {1: (250, 10, 10), 2: (10, 250, 10)}

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from img2tri.arrays import Bools
 from img2tri.errors import ImageError, ParameterError, integer, shown
 from img2tri.raster.in_memory.array_checks import Pixels, pixels
+from img2tri.types import Picture
 
 LISTED_LABELS = 20  # labels listed in a message
 MOST_LABELS = 2**24  # in a list
@@ -189,3 +190,25 @@ def _check_found(numbers: NDArray[Any], chosen: list[int]) -> None:
         more = f" and {len(found) - LISTED_LABELS} more" if len(found) > LISTED_LABELS else ""
         listed = ", ".join(map(str, found[:LISTED_LABELS].tolist()))
         raise ImageError(f"labels: expected values of the image, found {missing[0]}, which is not one; there are {listed}{more}")
+
+
+def label_colours(picture: Picture, labels: NDArray[Any]) -> dict[int, tuple[int, int, int]]:
+    """Return the colour an image has for each of some labels: that of its palette, or the label itself, which is a colour.
+
+    Examples
+    --------
+    >>> from img2tri.types import Frame
+    >>> picture = Picture(np.zeros((1, 1, 3), np.uint8), Frame((1, 1)))
+    >>> label_colours(picture, np.array([0xDC2828]))
+    {14428200: (220, 40, 40)}
+    """
+    known = {int(label) for label in labels.tolist() if label > 0}
+    palette = picture.notes.get("palette")
+    if palette is not None and picture.values.ndim == 2:
+        table = np.asarray(palette)
+        return {label: (int(r), int(g), int(b)) for label in known if label < len(table) for r, g, b in [table[label, :3]]}
+    if picture.values.ndim == 3 and picture.values.dtype in (np.uint8, np.uint16):
+        bits = 8 * picture.values.dtype.itemsize
+        parts = {label: tuple(label >> bits * i & (1 << bits) - 1 for i in (2, 1, 0)) for label in known}
+        return {label: (r >> bits - 8, g >> bits - 8, b >> bits - 8) for label, (r, g, b) in parts.items()}
+    return {}

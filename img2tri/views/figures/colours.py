@@ -7,6 +7,8 @@ people who see hues badly. Figures, 3MF and GLB files use the same colours.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -20,6 +22,19 @@ _LINEAR = np.array(
     ]
 )
 _GOLDEN_ANGLE = np.pi * (3 - np.sqrt(5))
+
+
+def region_colours(labels: Sequence[int], colours: Mapping[int, Sequence[int]] | None = None) -> list[tuple[int, int, int]]:
+    """Return the colour of each region: the one that is known of it, or one of `palette`.
+
+    Examples
+    --------
+    >>> region_colours([7, 9], {9: (220, 40, 40)})[1]
+    (220, 40, 40)
+    """
+    known = colours or {}
+    chosen = [known.get(label, other) for label, other in zip(labels, palette(len(labels)).tolist(), strict=True)]
+    return [(int(red), int(green), int(blue)) for red, green, blue in chosen]
 
 
 def palette(count: int) -> NDArray[np.uint8]:

@@ -35,6 +35,7 @@ from img2tri.views.formats.readers.read_stl_ply_obj_off_glb import by_trimesh
 from img2tri.views.formats.readers.read_vtp_vtu import by_xml
 from img2tri.views.formats.stl_ply_obj_off import obj, off, ply, stl
 from img2tri.views.formats.vtp_vtu import vtp, vtu_of_surface
+from img2tri.views.objects.base_plate import Base
 from img2tri.views.objects.body_per_region import Body, bodies
 from img2tri.views.objects.flat_or_extruded import Surface, coincident_points, plane_mesh, surface
 
@@ -54,13 +55,16 @@ class Format(NamedTuple):
         Whether it holds other values of faces and points.
     bodies
         Who writes solids instead, where each region is to be closed by itself.
+    apart
+        Whether flat meshes are written so too.
     """
 
-    write: Callable[[Surface], bytes]
+    write: Callable[[Surface], bytes] | None
     read: Callable[[bytes, str], tuple[NDArray[Any], NDArray[Any], NDArray[Any] | None]] | None
     single: bool = False
     arrays: bool = False
     bodies: Callable[[Sequence[Body]], bytes] | None = None
+    apart: bool = False
 
 
 SURFACE_FORMATS = {
@@ -69,7 +73,7 @@ SURFACE_FORMATS = {
     ".obj": Format(obj, by_trimesh),
     ".off": Format(off, by_trimesh),
     ".3mf": Format(threemf.flat_3mf, None, bodies=threemf.bodies_3mf),
-    ".glb": Format(glb, by_trimesh, single=True),
+    ".glb": Format(None, by_trimesh, single=True, bodies=glb, apart=True),
     ".vtp": Format(vtp, by_xml, arrays=True),
     ".vtu": Format(vtu_of_surface, by_xml, arrays=True),
 }
@@ -84,9 +88,11 @@ def save(
     z: float = 0.0,
     height: float | Mapping[int, float] | None = None,
     names: Mapping[int, str] | None = None,
+    colours: Mapping[int, tuple[int, int, int]] | None = None,
     cell_data: Mapping[str, ArrayLike] | None = None,
     point_data: Mapping[str, ArrayLike] | None = None,
     field_data: Mapping[str, str] | None = None,
+    base: Base | None = None,
 ) -> None:
     """Write a plane mesh, or with `height` the closed surface of the solid, in the format the suffix of `path` names.
 
@@ -96,9 +102,9 @@ def save(
     ----------
     path
         Where to write: .stl, .ply, .obj, .off, .3mf, .glb, .vtp or .vtu. See the table above for what each can hold.
-    names
-        Label -> name of the region, for formats that hold names.
-    vertices, triangles, regions, z, height, cell_data, point_data, field_data
+    names, colours
+        Label -> name, and (red, green, blue), of the region, for formats that hold these.
+    vertices, triangles, regions, z, height, cell_data, point_data, field_data, base
         As in `img2tri.views.objects.flat_or_extruded.surface`.
 
     Raises
@@ -124,14 +130,24 @@ def save(
         raise ParameterError(
             f"data: expected no arrays for {target.suffix}, which has no place for them, found {', '.join(others)}; use {homes}"
         )
-    if form.bodies and height is not None:
-        parts = bodies(vertices, triangles, regions, height=height, z=z, names=names, cell_data=cell_data, field_data=field_data)
+    if form.bodies and (height is not None or form.apart):
+        parts = bodies(
+            vertices, triangles, regions, height=height, z=z, names=names, colours=colours, cell_data=cell_data, field_data=field_data,
+            base=base,
+        )  # fmt: skip
+        if form.single:
+            for part in parts:
+                _check_rounding(path, part.surface)
         store(target, form.bodies(parts))
         return
-    made = surface(vertices, triangles, regions, z=z, height=height, cell_data=cell_data, point_data=point_data, field_data=field_data)
+    made = surface(
+        vertices, triangles, regions, z=z, height=height, cell_data=cell_data, point_data=point_data, field_data=field_data,
+        colours=colours, base=base,
+    )  # fmt: skip
     if form.single:
         _check_rounding(path, made)
-    store(target, form.write(made))
+    if form.write:
+        store(target, form.write(made))
 
 
 def load(path: str | os.PathLike[str]) -> tuple[Floats, Ints, Ints]:

@@ -28,7 +28,7 @@ from numpy.typing import ArrayLike
 
 from img2tri.arrays import Floats, unique_edges
 from img2tri.errors import MeshError
-from img2tri.views.figures.colours import palette
+from img2tri.views.figures.colours import region_colours
 from img2tri.views.formats.atomic_write import known_suffix, store, writable
 from img2tri.views.formats.solvers.plain_text import ascii_letters
 from img2tri.views.objects.body_per_region import unique_names
@@ -63,6 +63,7 @@ class _Drawing:
     bounds: tuple[float, float, float, float]
     upward: bool
     texts: dict[str, str]
+    colours: list[tuple[int, int, int]]
 
 
 def save_outlines(
@@ -70,6 +71,7 @@ def save_outlines(
     outlines: Mapping[int, Shape],
     *,
     names: Mapping[int, str] | None = None,
+    colours: Mapping[int, tuple[int, int, int]] | None = None,
     mesh: tuple[ArrayLike, ArrayLike] | None = None,
     bounds: tuple[float, float, float, float] | None = None,
     upward: bool = True,
@@ -87,6 +89,8 @@ def save_outlines(
         Label -> polygon or multi-polygon, such as ``mesh.outlines()``.
     names
         Label -> name. Regions without one are called "region_3" and so on. Layers of a DXF keep letters, digits, "-" and "_".
+    colours
+        Label -> (red, green, blue) an SVG fills the region with; regions without one get one of `img2tri.views.figures.colours`.
     mesh
         Vertices (n, 2) and triangles (m, 3), whose edges are to be drawn too; None draws none.
     bounds
@@ -114,7 +118,8 @@ def save_outlines(
     unique = unique_names(list(outlines), names or {})
     regions = [_Region(label, unique[label], _parts(label, outlines[label])) for label in sorted(outlines)]
     lines = np.zeros((0, 2, 2)) if mesh is None else _mesh_edges(*mesh)
-    drawing = _Drawing(regions, lines, bounds or _bounds(regions, lines), upward, dict(field_data or {}))
+    shown = region_colours([region.label for region in regions], colours)
+    drawing = _Drawing(regions, lines, bounds or _bounds(regions, lines), upward, dict(field_data or {}), shown)
     store(target, DRAWING_FORMATS[known_suffix(path, DRAWING_FORMATS)](drawing).encode())
 
 
@@ -170,7 +175,7 @@ def _svg_text(drawing: _Drawing) -> str:
         y = top - line[:, 1] if drawing.upward else line[:, 1] - bottom
         return "M" + "L".join(f"{number(a)} {number(b)}" for a, b in zip(x.tolist(), y.tolist(), strict=True))
 
-    colours = [f"#{red:02x}{green:02x}{blue:02x}" for red, green, blue in palette(len(drawing.regions)).tolist()]
+    colours = [f"#{red:02x}{green:02x}{blue:02x}" for red, green, blue in drawing.colours]
     paths = [
         f'<path id="region_{region.label}" data-label="{region.label}" data-name={quoteattr(region.name)} fill="{colour}" '
         f'd="{"".join(moves(ring[:-1]) + "Z" for rings in region.parts for ring in rings)}"><title>{escape(region.name)}</title></path>'

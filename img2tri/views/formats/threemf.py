@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from img2tri.arrays import Floats
-from img2tri.views.figures.colours import palette
+from img2tri.views.figures.colours import region_colours
 from img2tri.views.formats.number_rows import rows
 from img2tri.views.objects.body_per_region import Body
 from img2tri.views.objects.flat_or_extruded import Surface
@@ -76,7 +76,7 @@ def flat_3mf(made: Surface) -> bytes:
     labels, colour = np.unique(made.regions, return_inverse=True)
     triangle = '<triangle v1="{}" v2="{}" v3="{}" pid="1" p1="{}"/>'
     whole = _object(2, 1, "surface", "mesh", made.points, triangle, np.column_stack([made.faces, colour]))
-    return _package([_colour_group(1, palette(len(labels)).tolist()), whole], 1, made.field_data, labels.tolist())
+    return _package([_colour_group(1, region_colours(labels.tolist(), made.colours)), whole], 1, made.field_data, labels.tolist())
 
 
 def _colour_group(number: int, colours: Iterable[Sequence[int]]) -> str:

@@ -22,7 +22,8 @@ from numpy.typing import ArrayLike
 
 from img2tri.arrays import Floats, Ints
 from img2tri.errors import ParameterError, finite
-from img2tri.views.figures.colours import palette
+from img2tri.views.figures.colours import region_colours
+from img2tri.views.objects.base_plate import GRAY, PLATE, Base, plate_label
 from img2tri.views.objects.extrusion import extrude
 from img2tri.views.objects.flat_or_extruded import Surface, surface
 
@@ -60,8 +61,10 @@ def bodies(
     height: float | Mapping[int, float] | None,
     z: float = 0.0,
     names: Mapping[int, str] | None = None,
+    colours: Mapping[int, tuple[int, int, int]] | None = None,
     cell_data: Mapping[str, ArrayLike] | None = None,
     field_data: Mapping[str, str] | None = None,
+    base: Base | None = None,
 ) -> list[Body]:
     """Make one body of each region.
 
@@ -73,6 +76,9 @@ def bodies(
     height
         Thickness in world units, above 0, or label -> that of the region; None makes flat parts, open, that share the vertices between
         them.
+    colours
+        Label -> (red, green, blue) of the region, such as those of the image; regions without one get one of
+        `img2tri.views.figures.colours`.
     names
         Label -> name. Regions without one are called "region_3" and so on; a name given twice gets the label behind it.
     vertices, triangles, regions, z, cell_data, field_data
@@ -94,13 +100,16 @@ def bodies(
     >>> [(body.name, body.surface.points.shape) for body in bodies(*square, [3, 7], height=1, names={3: "bone"})]
     [('bone', (6, 3)), ('region_7', (6, 3))]
     """
-    flat = surface(vertices, triangles, regions, z=z, cell_data=cell_data, field_data=field_data)
+    if base is not None and height is None:
+        raise ParameterError("base: expected a height too, found none; a flat mesh has no plate")
+    flat = surface(vertices, triangles, regions, z=z + (base.thickness if base else 0), cell_data=cell_data, field_data=field_data)
     order = np.argsort(flat.regions, kind="stable")
     labels, starts = np.unique(flat.regions[order], return_index=True)
-    named = unique_names(labels.tolist(), names or {})
-    return [
+    named, shown = unique_names(labels.tolist(), names or {}), region_colours(labels.tolist(), colours)
+    plate = [] if base is None else [_plate(flat, base, z, set(named.values()))]
+    return plate + [
         Body(label, named[label], (red, green, blue), _body_surface(flat, mine, _own(height, label)))
-        for label, (red, green, blue), mine in zip(labels.tolist(), palette(len(labels)).tolist(), np.split(order, starts[1:]), strict=True)
+        for label, (red, green, blue), mine in zip(labels.tolist(), shown, np.split(order, starts[1:]), strict=True)
     ]
 
 
@@ -112,8 +121,10 @@ def to_scene(
     height: float | Mapping[int, float] | None,
     z: float = 0.0,
     names: Mapping[int, str] | None = None,
+    colours: Mapping[int, tuple[int, int, int]] | None = None,
     cell_data: Mapping[str, ArrayLike] | None = None,
     field_data: Mapping[str, str] | None = None,
+    base: Base | None = None,
 ) -> trimesh.Scene:
     """Make a `trimesh.Scene` with one closed body for each region; nothing is merged or reordered.
 
@@ -134,7 +145,18 @@ def to_scene(
     """
     import trimesh
 
-    made = bodies(vertices, triangles, regions, height=height, z=z, names=names, cell_data=cell_data, field_data=field_data)
+    made = bodies(
+        vertices,
+        triangles,
+        regions,
+        height=height,
+        z=z,
+        names=names,
+        colours=colours,
+        cell_data=cell_data,
+        field_data=field_data,
+        base=base,
+    )
     texts = made[0].surface.field_data
     scene: trimesh.Scene = trimesh.Scene(metadata={**texts, "regions": {body.name: body.label for body in made}})
     for body in made:
@@ -182,6 +204,15 @@ def _body_surface(flat: Surface, mine: Ints, height: float | None) -> Surface:
     from_triangle = mine[sources]
     cells = {name: values[from_triangle] for name, values in flat.cell_data.items()}
     return Surface(points, faces, flat.regions[from_triangle], cells, flat.field_data, closed=height is not None)
+
+
+def _plate(flat: Surface, base: Base, z: float, taken: set[str]) -> Body:
+    """Return the plate the bodies stand on; it has their corners on its upper side."""
+    v, t = flat.points[:, :2], flat.faces
+    points, beside = base.under(v, t)
+    faces, label = np.concatenate([t, beside]), plate_label(flat.regions.astype(np.int64))
+    whole = surface(points, faces, np.full(len(faces), label), z=z, height=base.thickness, field_data=flat.field_data)
+    return Body(label, PLATE if PLATE not in taken else f"{PLATE}_{label}", GRAY, whole)
 
 
 def _own(height: float | Mapping[int, float] | None, label: int) -> float | None:

@@ -128,10 +128,12 @@ def extrude(vertices: Floats, triangles: Ints, height: ArrayLike, *, z: float = 
         below[mine] = above
 
     every = np.arange(len(triangles))
-    return Extrusion(
-        np.concatenate(points), np.concatenate([bottom[:, ::-1], top, *walls]), np.concatenate([every, every, *sources]),
-        np.concatenate(origins)
-    )  # fmt: skip
+    whole = np.concatenate(points), np.concatenate([bottom[:, ::-1], top, *walls]), np.concatenate(origins)
+    if len(levels) > 1:
+        # Inside a storey nothing ends where the next one stands.
+        used, inverse = np.unique(whole[1], return_inverse=True)
+        whole = whole[0][used], inverse.reshape(-1, 3), whole[2][used]
+    return Extrusion(whole[0], whole[1], np.concatenate([every, every, *sources]), whole[2])
 
 
 def _unpinched(triangles: Ints, n: int, twins: Ints) -> tuple[Ints, Ints]:

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from img2tri.arrays import Floats, Ints
 from img2tri.errors import MeshError, ParameterError, finite
+from img2tri.views.objects.base_plate import Base, plate_label
 from img2tri.views.objects.extrusion import Extrusion, extrude
 
 
@@ -39,6 +40,8 @@ class Surface:
         True for the surface of a solid, False for a plane mesh.
     point_data
         Name -> (p,) or (p, c) array, values of each point.
+    colours
+        Label -> (red, green, blue) of regions whose colour is known.
     """
 
     points: Floats
@@ -48,6 +51,7 @@ class Surface:
     field_data: dict[str, str]
     closed: bool
     point_data: dict[str, NDArray[Any]] = field(default_factory=dict)
+    colours: dict[int, tuple[int, int, int]] = field(default_factory=dict)
 
 
 def surface(
@@ -60,6 +64,8 @@ def surface(
     cell_data: Mapping[str, ArrayLike] | None = None,
     point_data: Mapping[str, ArrayLike] | None = None,
     field_data: Mapping[str, str] | None = None,
+    colours: Mapping[int, tuple[int, int, int]] | None = None,
+    base: Base | None = None,
 ) -> Surface:
     """Check the arrays of a plane mesh and lay it at height `z`, or make the closed solid from `z` to ``z + height`` of it.
 
@@ -80,6 +86,11 @@ def surface(
         Name -> (n,) or (n, c) numbers of each vertex.
     field_data
         Name -> text. What ASCII cannot hold is escaped, as VTK reads nothing else.
+
+    colours
+        Label -> (red, green, blue) of regions whose colour is known.
+    base
+        A plate below the solid, which then stands on it, one closed body; it has a label of its own, and no values.
 
     Raises
     ------
@@ -105,15 +116,32 @@ def surface(
         raise ParameterError("cell_data: expected names other than 'region', which is the name of the regions, found 'region'")
     texts = {_ascii(name): _ascii(text) for name, text in (field_data or {}).items()}
     nodes = {name: _per_vertex(name, value, len(v)) for name, value in (point_data or {}).items()}
-    if height is None:
+    if base is not None and height is None:
+        raise ParameterError("base: expected a height too, found none; a flat mesh has no plate")
+    if base is not None:
+        above = np.broadcast_to(heights(height, labels), len(t)) if height is not None else np.zeros(0)
+        v, beside = base.under(v, t)
+        t, plate = np.concatenate([t, beside]), np.full(len(beside), plate_label(labels))
+        labels, tall = np.concatenate([labels, plate]), np.concatenate([above + base.thickness, np.full(len(beside), base.thickness)])
+        values = {name: _padded(value, len(t)) for name, value in values.items()}
+        nodes = {name: _padded(value, len(v)) for name, value in nodes.items()}
+        solid = extrude(v, t, tall, z=z)
+    elif height is None:
         solid = Extrusion(np.column_stack([v, np.full(len(v), z)]), t, np.arange(len(t)), np.arange(len(v)))
     else:
         solid = extrude(v, t, heights(height, labels), z=z)
     cells = {name: value[solid.sources] for name, value in values.items()}
     return Surface(
         solid.points, solid.faces, labels[solid.sources].astype(np.int32 if narrow else np.int64), cells, texts, closed=height is not None,
-        point_data={name: value[solid.origins] for name, value in nodes.items()},
+        point_data={name: value[solid.origins] for name, value in nodes.items()}, colours=dict(colours or {}),
     )  # fmt: skip
+
+
+def _padded(values: NDArray[Any], count: int) -> NDArray[Any]:
+    """Give the plate and its corners no value: NaN, or 0 of whole numbers."""
+    nothing = np.nan if values.dtype.kind == "f" else 0
+    widths = [(0, count - len(values)), *[(0, 0)] * (values.ndim - 1)]
+    return np.pad(values, widths, constant_values=nothing)
 
 
 def heights(height: float | Mapping[int, float], labels: NDArray[Any]) -> ArrayLike:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
+from img2tri.views.objects.base_plate import Base
 from img2tri.views.objects.flat_or_extruded import Surface, surface
 
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ def to_pyvista(
     cell_data: Mapping[str, ArrayLike] | None = None,
     point_data: Mapping[str, ArrayLike] | None = None,
     field_data: Mapping[str, str] | None = None,
+    base: Base | None = None,
 ) -> pyvista.PolyData:
     """Make a `pyvista.PolyData` of a plane mesh.
 
@@ -44,7 +46,9 @@ def to_pyvista(
     (1, 2.0, [7])
     """
     return poly_data(
-        surface(vertices, triangles, regions, z=z, height=height, cell_data=cell_data, point_data=point_data, field_data=field_data)
+        surface(
+            vertices, triangles, regions, z=z, height=height, cell_data=cell_data, point_data=point_data, field_data=field_data, base=base
+        )
     )
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from img2tri.views.objects.base_plate import Base
 from img2tri.views.objects.flat_or_extruded import surface
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ def to_trimesh(
     cell_data: Mapping[str, ArrayLike] | None = None,
     point_data: Mapping[str, ArrayLike] | None = None,
     field_data: Mapping[str, str] | None = None,
+    base: Base | None = None,
 ) -> trimesh.Trimesh:
     """Make a `trimesh.Trimesh` of a plane mesh; nothing is merged, dropped or reordered.
 
@@ -47,7 +49,9 @@ def to_trimesh(
     """
     import trimesh
 
-    made = surface(vertices, triangles, regions, z=z, height=height, cell_data=cell_data, point_data=point_data, field_data=field_data)
+    made = surface(
+        vertices, triangles, regions, z=z, height=height, cell_data=cell_data, point_data=point_data, field_data=field_data, base=base
+    )
     return trimesh.Trimesh(
         made.points,
         made.faces,

@@ -292,7 +292,7 @@ def test_the_suffix_may_be_in_capitals(tmp_path, plate):
 def test_a_mesh_that_float32_cannot_hold_is_refused(tmp_path, suffix):
     vertices, triangles, regions = strip()
     path = tmp_path / f"far{suffix}"
-    words = r"far\.\w+: holds coordinates as float32, .* coordinates up to 5e\+06, \d+ of 12 triangles would collapse .* save it as \.ply"
+    words = r"far\.\w+: holds coordinates as float32, .* coordinates up to 5e\+06, \d+ of \d+ triangles would collapse .* save it as \.ply"
     with pytest.raises(FileError, match=words):
         save(path, vertices * 0.1 + 5e6, triangles, regions)
     with pytest.raises(FileError, match="float32"):

@@ -34,7 +34,9 @@ def by_trimesh(data: bytes, suffix: str) -> tuple[NDArray[Any], NDArray[Any], ND
         if isinstance(part, trimesh.Trimesh):
             points.append(trimesh.transform_points(part.vertices, matrix))
             faces.append(np.asarray(part.faces) + count)
-            regions.append(_face_regions(str(name), part))
+            named = scene.metadata.get("regions")
+            label = named.get(str(name)) if isinstance(named, dict) else None
+            regions.append(_face_regions(f"region_{label}" if isinstance(label, int) else str(name), part))
             count += len(points[-1])
     corners, joined = np.concatenate(points), np.concatenate(faces)
     if suffix == ".stl" or len(regions) > 1:
