@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from img2tri.arrays import Floats, Points, cross
+from img2tri.arrays import Floats, Points, as_complex, cross
 from img2tri.shapes.place.constrained_smoothing import BoundedChains, restore_swept_areas, swept_areas, widest_fitting_spline
 from img2tri.shapes.place.corners import find_corners
 from img2tri.shapes.place.known_crossings import OutlineLevel, known_crossings
@@ -40,6 +40,11 @@ def place_outlines(
     corners
         True: corners stay sharp; False: they are rounded as all else is.
     """
+    if frame.spacing[0] != frame.spacing[1]:
+        # Steps of pixels are alike in both directions only where pixels are square: there outlines are smoothed, and stretched then.
+        placed, squares = place_outlines(crack_edges, Frame(frame.shape, upward=frame.upward), gray=gray, level=level, corners=corners)
+        stretched = lay_out(squares.crack_edges, frame)
+        return stretched.outlines(as_complex(placed.points * (np.array(frame.spacing) / frame.pixel))), stretched
     dual_edges = lay_out(crack_edges, frame)
     if not len(dual_edges.crossed):
         return dual_edges.outlines(dual_edges.middle), dual_edges

@@ -246,3 +246,14 @@ def test_on_sides_all_outlines_run_along_the_pixels(name, background, connectivi
     else:
         assert shapely.hausdorff_distance(lines, sides, densify=0.25) <= 0.5 + 1e-9
         assert shapely.distance(sides, shapely.points(outlines.points)).max() <= MOST_SHIFT
+
+
+@pytest.mark.parametrize("ratio", [2.5, 7.0])
+def test_where_pixels_are_not_square_outlines_are_those_of_square_ones_stretched(ratio):
+    labels = specimens.ellipse(70, (28.3, 17.1), 25, (34.6, 35.2))
+    square = place_outlines(find_crack_edges(labels), Frame(labels.shape))[0]
+    for spacing in ((1.0, ratio), (ratio, 1.0)):
+        outlines, dual_edges = place_outlines(find_crack_edges(labels), Frame(labels.shape, spacing=spacing))
+        np.testing.assert_allclose(outlines.points, square.points * spacing, atol=1e-9)
+        np.testing.assert_allclose(dual_edges.pixel, complex(*spacing))
+        assert np.array_equal(outlines.chains.indices, square.chains.indices)
