@@ -10,6 +10,7 @@ The flow, one folder for each stage; each is functions from plain data to plain 
 The house around the stages:
 
     pipeline      `mesh_image`, every stage in order: the place to begin reading
+    many/         `mesh_images`: many images, on the cores of this machine or on a Dask cluster
     options/      every option of `mesh_image`, written once: type, default, unit, words, check
     recipes/      ways through the stages; only recipes hand data from one stage to the next
     paper/        the paper this library began with: every function of its listing, and its two recipes
@@ -63,7 +64,9 @@ if TYPE_CHECKING:
         ParameterError,
         SizeWarning,
     )
+    from img2tri.many.mesh_images import mesh_images
     from img2tri.mesh import TriangleMesh
+    from img2tri.mesh import load_mesh as load
     from img2tri.pipeline import mesh_image
     from img2tri.tiles.tiling import mesh_tiles
 
@@ -73,6 +76,8 @@ _PLACES = {
     "mesh_image": "pipeline",
     "mesh_tiles": "tiles.tiling",
     "explore": "app.explore",
+    "mesh_images": "many.mesh_images",
+    "load": "mesh:load_mesh",
     "TriangleMesh": "mesh",
     "Report": "certificate.report",
     "Img2triError": "errors",
@@ -99,7 +104,9 @@ __all__ = [
     "SizeWarning",
     "TriangleMesh",
     "explore",
+    "load",
     "mesh_image",
+    "mesh_images",
     "mesh_tiles",
 ]
 
@@ -108,7 +115,8 @@ def __getattr__(name: str) -> Any:
     """Load public names when they are first used, so that importing img2tri costs nothing."""
     if name not in _PLACES:
         raise AttributeError(f"module 'img2tri' has no attribute {name!r}")
-    value = getattr(import_module(f"img2tri.{_PLACES[name]}"), name)
+    place, _, other = _PLACES[name].partition(":")
+    value = getattr(import_module(f"img2tri.{place}"), other or name)
     globals()[name] = value
     return value
 

@@ -16,6 +16,7 @@ from img2tri.types import Floats, Frame, Ints, Provenance
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from numpy.typing import NDArray
 
     from img2tri.certificate.report import Report
     from img2tri.triangles.tools.quality_summary import Quality
@@ -102,6 +103,23 @@ class TriangleMesh(MeshExports):
         boundary = edges[np.bincount(sides.ravel()) == 1]
         return vertex_pairs(self.vertices, self.frame.bounds, settings.get("periodic"), boundary)
 
+    def sample(self, image: Any, on: str = "triangles", *, method: str | None = None) -> NDArray[Any]:
+        """Carry an image on the same grid to triangles or vertices; what `save` and objects take as ``data``.
+
+        Parameters
+        ----------
+        image
+            (h, w) or (h, w, k) numbers on the grid of the image the mesh was made from, or the path of such an image.
+        on
+            "triangles" or "vertices".
+        method
+            "mean": of each triangle the mean over its area, exact; at vertices linear between the centres of pixels. "nearest": the pixel
+            at the centroid or vertex, for labels. None: "nearest" for bool, else "mean". See `img2tri.recipes.sampling`.
+        """
+        from img2tri.recipes.sampling import sample
+
+        return sample(image, self.vertices, self.triangles, self.frame, self.origin, on=on, method=method)
+
     def smoothed(
         self,
         method: str = "cotangent",
@@ -156,3 +174,32 @@ class TriangleMesh(MeshExports):
         from img2tri.mesh_pictures import figure
 
         return figure(self, image, path, colour_by=colour_by, ax=ax)
+
+
+def load_mesh(path: str | os.PathLike[str]) -> TriangleMesh:
+    """Read a mesh back from a file that `TriangleMesh.save`, or another program, wrote; ``img2tri.load`` is its public name.
+
+    Parameters
+    ----------
+    path
+        A file that ends in .stl, .ply, .obj, .off, .glb, .vtp, .vtu, .vtkhdf, .msh, .bdf, .inp, .mesh or .xdmf, with triangles in one plane
+        of constant z.
+
+    Returns
+    -------
+    TriangleMesh
+        With regions, names, the place of the image and its sides, so that `sets` are those that were saved, as far as the format holds
+        them: .stl and .off have triangles alone, .ply, .obj and .glb regions too. Quadratic triangles become those of their corners. There
+        is no `report`: its image is not in the file.
+
+    Raises
+    ------
+    FileError
+        If the suffix is not known, or the file is missing, damaged or of another kind.
+    MeshError
+        If it holds other cells, or triangles in space, such as a solid; ``img2tri quality`` measures these.
+    """
+    from img2tri.views.formats.readers.flat_mesh import flat_mesh
+
+    vertices, triangles, regions, frame, names = flat_mesh(path)
+    return TriangleMesh(vertices, triangles, regions, frame, names)

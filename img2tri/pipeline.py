@@ -24,6 +24,7 @@ from img2tri.raster.labels.forewarnings import forewarnings
 from img2tri.raster.labels.label_maps import label_colours
 from img2tri.raster.labels.otsu_threshold import Level
 from img2tri.raster.labels.segmentation import Segmentation, segment, without_specks
+from img2tri.raster.metadata.wanted_width import as_wide_as
 from img2tri.raster.reading import read
 from img2tri.recipes.conforming import Sizes, conform, trace_outlines, wanted_sizes
 from img2tri.recipes.mirrored import conform_symmetric
@@ -77,7 +78,8 @@ def mesh_image(image: Any, *, progress: Callable[[str, float], None] | None = No
     o = checked(options)
 
     tell("reading", 0.0)
-    picture = crop(read(image, **of(ReadOptions, o)), o["crop"])
+    whole = as_wide_as(read(image, **of(ReadOptions, o)), o["width"], spacing=o["spacing"])
+    picture = crop(whole, o["crop"])
     frame = picture.frame
 
     tell("labels", 0.1)

@@ -141,3 +141,12 @@ def test_labels_in_napari(tmp_path):
     found = run("13_labels_in_napari", tmp_path)
     assert found["area"] == pytest.approx(found["pixels"], rel=1e-9)
     assert found["regions"] > 5
+
+
+def test_many_images_on_a_cluster(tmp_path):
+    pytest.importorskip("distributed")
+    found = run("14_many_images_on_a_cluster", tmp_path)
+    assert found["volume"] == pytest.approx(found["truth"], rel=0.03)
+    assert found["top"] > 4
+    assert found["missed"] >= 1
+    assert len(list(tmp_path.glob("*.vtp"))) == 12 - found["missed"]

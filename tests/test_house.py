@@ -35,12 +35,12 @@ ORDER = [
     {"mesh_exports"},
     {"mesh"},
     {"pipeline"},
-    {"tiles"},
+    {"many", "tiles"},
     {"app"},
     {"cli"},
     {"__main__"},
 ]
-FOLDERS = {*ROOMS, "paper", "recipes", "certificate", "options", "tiles", "app", "cli"}  # their files may import each other
+FOLDERS = {*ROOMS, "paper", "recipes", "certificate", "options", "many", "tiles", "app", "cli"}  # their files may import each other
 # numpy is at home everywhere.
 LIBRARIES = {
     "arrays": {"scipy"},  # sorts by counting
@@ -56,7 +56,8 @@ LIBRARIES = {
     "app": {"starlette", "uvicorn", "anywidget", "traitlets", "matplotlib"},
     "mesh_exports": {"skfem", "shapely", "trimesh", "pyvista"},  # for types only
     "mesh": {"matplotlib"},  # for types only
-    "cli": {"rich", "distributed"},
+    "many": {"distributed"},
+    "cli": {"rich", "distributed", "pyarrow"},
 }
 HEAVY = {"cv2", "PIL", "tifffile", "scipy", "shapely", "igl", "pythoncdt", "trimesh", "pyvista", "vtkmodules", "matplotlib", "rich"}
 HEAVY |= {"starlette", "uvicorn", "anywidget", "zarr", "h5py", "dask", "distributed"}
@@ -147,8 +148,8 @@ def test_mesh_image_loads_no_view():
 def test_public_names_are_there_and_no_others():
     assert set(img2tri.__all__) <= set(dir(img2tri))
     assert all(getattr(img2tri, name).__module__.startswith("img2tri.") for name in img2tri.__all__)
-    with pytest.raises(AttributeError, match="no attribute 'mesh_images'"):
-        _ = img2tri.mesh_images
+    with pytest.raises(AttributeError, match="no attribute 'mesh_imagery'"):
+        _ = img2tri.mesh_imagery
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(PACKAGE)))

@@ -23,6 +23,7 @@ from img2tri import mesh_image
 from img2tri.cli import main, printing
 from img2tri.cli import workers as pool
 from img2tri.cli.job import Job
+from img2tri.many.workers import local_workers
 
 IMAGES = [specimens.disc(30 + k, 10.0 + k / 2).astype(bool) for k in range(4)]
 CASES = [(image, {"recipe": "conforming"}) for image in IMAGES] + [(image, {"recipe": "unstructured", "threshold": 0}) for image in IMAGES]
@@ -174,8 +175,8 @@ def test_a_worker_that_dies_fails_its_image_only(images, capsys):
     assert main(["mesh", *names, "--out-dir", "out", "--workers", "2", "--quiet"]) == 2
     assert sorted(contents("out")) == ["a.ply", "b.ply"]
     assert capsys.readouterr().err.splitlines() == [
-        "img2tri: kills.png: the process that meshed it was ended by SIGKILL; if memory ran out, fewer --workers need less",
-        "img2tri: exits.png: the process that meshed it ended with status 7; if memory ran out, fewer --workers need less",
+        "img2tri: kills.png: the process that meshed it ended twice; if memory ran out, fewer --workers need less",
+        "img2tri: exits.png: the process that meshed it ended twice; if memory ran out, fewer --workers need less",
         "img2tri: 2 of 4 images failed: kills.png, exits.png",
     ]
     assert not multiprocessing.active_children()
@@ -185,8 +186,8 @@ def test_a_worker_that_dies_fails_its_image_only(images, capsys):
 def test_a_mistake_of_ours_in_a_worker_is_not_hidden(images):
     # In the process itself no file is opened that way, so it must be a worker that raised.
     jobs = [Job(name, {}) for name in images("raises.png", "a.png")]
-    with pytest.raises(RuntimeError, match=r"raises.png: a mistake in a worker\n(.*\n)*ZeroDivisionError: a mistake"):
-        list(pool.run(jobs, 2, lambda *_: None))
+    with pytest.raises(ZeroDivisionError, match="a mistake"):
+        list(pool.run(jobs, local_workers(2), lambda *_: None))
     assert not multiprocessing.active_children()
 
 
@@ -235,7 +236,7 @@ def test_the_bar_only_goes_forward(images):
     jobs = [Job(name, {"edge_length": 8}) for name in images("a.png", "bad.png", "b.png")]
     for workers in (1, 2):
         calls.clear()
-        outcomes = list(pool.run(jobs, workers, lambda *call: calls.append(call)))
+        outcomes = list(pool.run(jobs, local_workers(workers), lambda *call: calls.append(call)))
         assert [outcome.image for outcome in outcomes] == ["a.png", "bad.png", "b.png"]
         for number in range(3):
             done = [fraction for k, _, fraction in calls if k == number]

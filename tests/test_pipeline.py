@@ -153,6 +153,7 @@ CHANGES = {
     "smoothing": (UNEVEN, {"smoothing": "none"}, {"smoothing": "uniform"}, {"smoothing": "cotangent"}),
     "iterations": (UNEVEN, {"smoothing": "uniform", "iterations": 1}, {"smoothing": "uniform", "iterations": 5}),
     "spacing": (UNEVEN, {"edge_length": "6px"}, {"edge_length": "6px", "spacing": 2}, {"edge_length": "6px", "spacing": (1, 2)}),
+    "width": (UNEVEN, {"edge_length": "6px"}, {"edge_length": "6px", "width": 100}, {"edge_length": "6px", "width": 40}),
     "origin": (UNEVEN, {}, {"origin": "upper"}, {"origin": (5, -3)}),
     "crop": (UNEVEN, {}, {"crop": (0, 0, 40, 60)}, {"crop": (20, 30, 50, 60)}),
     "min_area": (UNEVEN, {}, {"min_area": 100}),
@@ -750,3 +751,33 @@ def test_files_that_know_their_pixels_are_in_millimetres(tmp_path):
 def test_units_that_are_none():
     with pytest.raises(ParameterError, match="units: expected one of 'um', 'mm', 'cm', 'm', 'in', 'ft', found 'furlong'"):
         mesh_image(specimens.disc(30, 10), units="furlong")
+
+
+# ---- as wide as wanted ----
+
+
+def test_an_image_as_wide_as_wanted():
+    wide = mesh_image(UNEVEN, width=80, edge_length=4)
+    pixel = 80 / UNEVEN.shape[1]
+    assert same(wide, mesh_image(UNEVEN, spacing=pixel, edge_length=4))
+    assert wide.frame.bounds == pytest.approx((0, 0, 80, pixel * UNEVEN.shape[0]))
+    assert wide.report.settings["spacing"] == (pixel, pixel)
+    assert same(mesh_image(UNEVEN, **wide.report.options), wide)
+    part = mesh_image(UNEVEN, width=80, crop=(0, 0, 40, 40), edge_length=4)
+    assert part.frame.pixel == pytest.approx(pixel)
+    with pytest.raises(ParameterError, match="width: expected to be left out with the size of a pixel"):
+        mesh_image(UNEVEN, width=80, spacing=2)
+    with pytest.raises(ParameterError, match="width: expected a number above 0, found -1"):
+        mesh_image(UNEVEN, width=-1)
+    with pytest.raises(ParameterError, match="width: expected pixels that numbers of 64 bits can part"):
+        mesh_image(UNEVEN, width=1e-9, origin=(1e6, 0))
+
+
+def test_pixels_keep_the_shape_a_file_knows(tmp_path):
+    path = tmp_path / "flat.png"
+    Image.fromarray(UNEVEN.astype(bool)).save(path, dpi=(254, 127))
+    mesh = mesh_image(path, width=50, spacing="file")
+    dx, dy = mesh.frame.spacing
+    assert dx == pytest.approx(50 / UNEVEN.shape[1])
+    assert dy / dx == pytest.approx(2, rel=1e-3)
+    assert mesh.report.settings["units"] is None

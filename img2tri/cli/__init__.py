@@ -3,11 +3,11 @@
     what was typed      -> arguments     arguments          the commands, and what they share
                                          option_arguments   options of meshing, from their entries in `img2tri.options`
                                          save_arguments     options of saving, and which formats take them
-    images as typed     -> names         inputs             folders, patterns
-    arguments           -> jobs          file_names         an image, and the files to be made of it
+    arguments           -> jobs          file_names         an image, those of a folder or pattern too, and the files to be made of it
     a job               -> an outcome    meshing_job        by mesh_image, as any user of the library would
     jobs                -> outcomes      workers            one after the other, or by several processes, which are started here
     outcomes            -> words         printing           the one place that prints
+                                         summary_table      a row for each image, and which are whole already
                                          wording            messages in the words of the command line
 
 `job` has the records these hand to each other, `stdin_stdout` has stdin and stdout as files; `app_command` starts the

@@ -48,7 +48,7 @@ PAGE = """Mesh an image and write a page about it: the mesh over the image, to z
 histogram of its quality, its certificate, and the command that makes it again.
 One file, which needs nothing else to be looked at. Options are those of mesh.
 """
-QUALITY = """Print a table of the quality of plane meshes.
+QUALITY = """Print a table of the quality of meshes, plane or solid.
 
 q is 2 r / R, 1 for an equilateral triangle and 0 for a flat one; the other
 measures have the names and definitions of Verdict. Angles are in degrees.
@@ -149,7 +149,12 @@ def _parser() -> ArgumentParser:
     add_tiles(commands)
     add_app(commands)
     quality = commands.add_parser("quality", help="judge meshes", description=QUALITY, formatter_class=_formatter, allow_abbrev=False)
-    quality.add_argument("meshes", nargs="+", metavar="MESH", help=".stl, .ply, .obj, .off, .glb, .vtp, .vtu, .msh or .bdf; - for stdin")
+    quality.add_argument(
+        "meshes",
+        nargs="+",
+        metavar="MESH",
+        help=".stl .ply .obj .off .glb .vtp .vtu .vtkhdf .msh .bdf .inp .mesh .xdmf, flat or solid; - for stdin",
+    )
     quality.add_argument("--format", metavar="F", help="of a mesh on stdin, such as stl")
     return parser
 
@@ -179,9 +184,14 @@ def _add_files(parser: ArgumentParser) -> None:
     colours = ("quality", "region", "none")
     add("--colour-by", choices=colours, default="quality", help="what the figure shows; none: red edges (default quality)")
     add("--report", metavar="REPORT", help=".json: what the mesh keeps of what was promised; a warning for each promise that it does not")
+    about = ".csv or .parquet: a row for each image, with counts, angles, areas, distance, seconds, what was chosen; one line on screen"
+    add("--summary", metavar="TABLE", help=about)
+    add("--resume", action="store_true", help="skip images that --summary says are whole, with the same options, from the same bytes")
     add("--quiet", action="store_true", help="print errors and warnings only")
     add_save_options(parser.add_argument_group("how meshes are saved"))
 
     add = parser.add_argument_group("how it is run").add_argument
     about_workers = "mesh so many images at once, in processes of their own (default 1: in this one); the files are the same"
-    add("--workers", type=whole_number, default=1, metavar="N", help=about_workers)
+    add("--workers", type=whole_number, metavar="N", help=about_workers)
+    add("--scheduler", metavar="ADDRESS", help="of a Dask cluster that sees the files, as tcp://host:8786; needs img2tri[dask]")
+    add("--scheduler-file", metavar="FILE", help="that a Dask scheduler wrote")

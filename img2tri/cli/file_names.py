@@ -19,10 +19,16 @@ from img2tri.cli.stdin_stdout import DASH, STEM, check_stdin, check_stdout
 from img2tri.errors import FileError, ParameterError
 from img2tri.options import OPTIONS
 from img2tri.options.table import load_options
+from img2tri.raster.files.image_names import images_named
 
 USUAL_FORMAT = ".ply"  # keeps all digits and the regions, and is read everywhere
 SEVERAL_FILES = (".xdmf",)
 LETTERS_ALIKE = ("darwin", "win32")  # where names in large and small letters are one
+
+
+def images_typed(names: Sequence[str]) -> list[str]:
+    """Return the names of images, in the order typed: a folder is its images, a pattern that no shell expanded what it matches."""
+    return [image for name in names for image in ([name] if name == DASH else images_named(name))]
 
 
 def mesh_options(arguments: Namespace) -> dict[str, Any]:

@@ -28,6 +28,10 @@ class Job:
         The suffix of the mesh that goes to stdout, and the options it is saved with.
     quiet
         Whether nothing is to be said about it.
+    summary
+        Whether a row of a table is wanted.
+    folder
+        Where all names begin, for workers that began elsewhere.
     """
 
     image: str
@@ -40,6 +44,8 @@ class Job:
     sent: str | None = None
     sent_with: dict[str, Any] = field(default_factory=dict)
     quiet: bool = False
+    summary: bool = False
+    folder: str | None = None
 
     @property
     def files(self) -> list[str]:
@@ -63,6 +69,8 @@ class Outcome:
         Why there is no mesh; None if there is one.
     data
         The mesh for stdout.
+    row
+        Of a table of all images, if one is wanted.
     """
 
     image: str
@@ -70,3 +78,4 @@ class Outcome:
     warnings: Sequence[str] = ()
     problem: str | None = None
     data: bytes | None = None
+    row: dict[str, Any] | None = None

@@ -7,30 +7,53 @@ what is a mistake of ours is raised.
 from __future__ import annotations
 
 import os
+import time
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
+from threading import Lock
 from typing import TYPE_CHECKING, Any
 
 from img2tri.cli.job import Job, Outcome
 from img2tri.cli.stdin_stdout import DASH, STEM, from_stdin, named
-from img2tri.errors import Img2triError, Img2triWarning
+from img2tri.cli.summary_table import facts, in_one_line
+from img2tri.errors import FileError, Img2triError, Img2triWarning
 
 if TYPE_CHECKING:
     from img2tri.mesh import TriangleMesh
     from img2tri.raster.files.byte_sources import Source
 
 Progress = Callable[[str, float], None]
+ONE_FOLDER = Lock()  # a process works in one at a time
 
 
 def make(job: Job, progress: Progress) -> Outcome:
     """Mesh an image and write its files."""
     try:
-        return _made(job, progress)
+        with _within(job.folder):
+            return _made(job, progress)
     except (Img2triError, MemoryError) as error:
         return Outcome(job.image, problem=problem(error))
+
+
+@contextmanager
+def _within(folder: str | None) -> Iterator[None]:
+    """Work in a folder, so that names, which are told in files and messages, are those that were typed."""
+    if folder is None or folder == os.getcwd():
+        yield
+        return
+    with ONE_FOLDER:
+        before = os.getcwd()
+        try:
+            os.chdir(folder)
+        except OSError as problem:
+            raise FileError(f"{folder!r}: expected a folder the worker can see, found that it cannot ({problem.strerror})") from problem
+        try:
+            yield
+        finally:
+            os.chdir(before)
 
 
 def held(job: Job) -> Job | Outcome:
@@ -51,6 +74,7 @@ def _made(job: Job, progress: Progress) -> Outcome:
     from img2tri.pipeline import mesh_image
     from img2tri.views.formats.atomic_write import store, writable
 
+    began = time.perf_counter()
     image = job.source or opened(job.image, job.options)
     with _forewarned() as told:
         mesh = mesh_image(image, progress=progress, **job.options)
@@ -60,11 +84,13 @@ def _made(job: Job, progress: Progress) -> Outcome:
         mesh.plot(meshed_pixels(image, job.options), job.plot, colour_by=job.colour_by)
     if job.report:
         store(writable(job.report, [".json"]), (mesh.report.to_json() + "\n").encode())
+    row = facts(job, mesh, time.perf_counter() - began) if job.summary else None
     return Outcome(
         job.image,
-        () if job.quiet else (*about(job.image, mesh), *_chosen(job, mesh)),
+        () if job.quiet else (in_one_line(row),) if row else (*about(job.image, mesh), *_chosen(job, mesh)),
         (*told, *(mesh.report.warnings if job.report else ())),
         data=None if job.sent is None else _bytes(mesh, job.sent, job.sent_with),
+        row=row,
     )
 
 
@@ -96,16 +122,30 @@ def view(job: Job, command: str, progress: Progress) -> tuple[Outcome, str]:
     return Outcome(job.image, about(job.image, mesh), (*told, *mesh.report.warnings)), text
 
 
-def mesh_of(path: str, suffix: str | None) -> TriangleMesh:
-    """Load a mesh, or one of the format `suffix` from stdin."""
-    from img2tri.mesh import TriangleMesh
-    from img2tri.views.formats.save_load import load
-
+def about_file(path: str, suffix: str | None) -> list[str]:
+    """Say what a file of a mesh holds, plane or solid; or one of the format `suffix` from stdin."""
     if path != DASH:
-        return TriangleMesh(*load(path))
+        return _measured(path, path)
     with named(suffix or "") as place:
         Path(place).write_bytes(from_stdin().data)
-        return TriangleMesh(*load(place))
+        return _measured(path, place)
+
+
+def _measured(name: str, path: str | Path) -> list[str]:
+    from img2tri.mesh import load_mesh
+    from img2tri.views.formats.readers.flat_mesh import PLANE_KINDS, NotFlatError
+
+    try:
+        return about(name, load_mesh(path))
+    except NotFlatError as solid:
+        from img2tri.views.objects.solid_quality import solid_table
+
+        found = solid.found
+        head, *table = solid_table(found.points, found.cells, found.kind)
+        x, y, z = zip(found.points.min(axis=0), found.points.max(axis=0), strict=True)
+        places = f"{x[0]:g} <= x <= {x[1]:g}, {y[0]:g} <= y <= {y[1]:g}, {z[0]:g} <= z <= {z[1]:g}"
+        what = "surface of a solid" if found.kind in PLANE_KINDS else "solid"
+        return [f"{name}: {what}, {head}, {len(set(found.regions.tolist()))} regions, {places}", *table]
 
 
 def opened(image: str, options: dict[str, Any]) -> str | Source:
@@ -116,9 +156,11 @@ def opened(image: str, options: dict[str, Any]) -> str | Source:
 def meshed_pixels(image: str | Source, options: dict[str, Any]) -> Any:
     """Read the part of an image that was meshed."""
     from img2tri.raster.labels.cropping import crop
+    from img2tri.raster.metadata.wanted_width import as_wide_as
     from img2tri.raster.reading import read
 
-    return crop(read(image, **_of(options, "spacing", "origin", "page", "max_pixels")), options.get("crop")).values
+    whole = read(image, **_of(options, "spacing", "origin", "page", "max_pixels"))
+    return crop(as_wide_as(whole, options.get("width")), options.get("crop")).values
 
 
 def _of(options: dict[str, Any], *names: str) -> dict[str, Any]:

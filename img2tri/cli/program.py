@@ -19,14 +19,14 @@ from functools import partial
 from img2tri.cli.app_command import run_app
 from img2tri.cli.arguments import parse
 from img2tri.cli.commands.tiles_command import run_tiles
-from img2tri.cli.file_names import folders, jobs_of, mesh_options, suffix_of_stdin
-from img2tri.cli.inputs import expanded
+from img2tri.cli.file_names import folders, images_typed, jobs_of, mesh_options, suffix_of_stdin
 from img2tri.cli.job import Job
-from img2tri.cli.meshing_job import about, mesh_of, problem, view
+from img2tri.cli.meshing_job import about_file, problem, view
 from img2tri.cli.printing import Bar, complain, flush, tell, tell_failures, tell_outcome
 from img2tri.cli.stdin_stdout import DASH, abandon_stdout, check_stdin, check_stdout, to_stdout
-from img2tri.cli.workers import run
-from img2tri.errors import Img2triError, integer
+from img2tri.cli.summary_table import check_summary, is_whole, rows_of, summary_table
+from img2tri.cli.workers import run, workers_of
+from img2tri.errors import Img2triError
 
 DONE, BAD, INTERRUPTED = 0, 2, 130
 
@@ -77,12 +77,24 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _mesh(arguments: Namespace) -> int:
     """Run ``img2tri mesh``. All names are checked before the first image is read."""
-    workers, failed = integer("workers", arguments.workers, least=1), []
-    images = expanded(arguments.images)
-    with folders(arguments):
-        jobs = jobs_of(arguments, images)
-        with Bar(images, quiet=arguments.quiet) as bar, closing(run(jobs, workers, bar)) as outcomes:
+    failed = []
+    images = images_typed(arguments.images)
+    with workers_of(arguments, len(images)) as where, folders(arguments):
+        jobs = check_summary(arguments.summary, arguments.resume, jobs_of(arguments, images))
+        before = rows_of(arguments.summary) if arguments.resume else {}
+        whole = {job.image: before[job.image] for job in jobs if is_whole(job, before.get(job.image))}
+        if not arguments.quiet:
+            tell((f"{image}: whole, as it was made before" for image in whole), aside=DASH in arguments.outputs)
+        jobs = [job for job in jobs if job.image not in whole]
+        names = [job.image for job in jobs]
+        with (
+            summary_table(arguments.summary, whole) as table,
+            Bar(names, quiet=arguments.quiet) as bar,
+            closing(run(jobs, where, bar)) as outcomes,
+        ):
             for outcome in outcomes:
+                if table is not None:
+                    table.add(outcome)
                 with bar.aside():
                     tell_outcome(outcome, several=len(jobs) > 1, aside=DASH in arguments.outputs)
                 if outcome.data is not None:
@@ -90,7 +102,7 @@ def _mesh(arguments: Namespace) -> int:
                 if outcome.problem is not None:
                     failed.append(outcome.image)
     tell_failures(failed, len(jobs))
-    if not any((arguments.outputs, arguments.out_dir, arguments.plot, arguments.report)):
+    if not any((arguments.outputs, arguments.out_dir, arguments.plot, arguments.report, arguments.summary)):
         complain("no file was asked for, none was written; -o mesh.stl writes one")
     return BAD if failed else DONE
 
@@ -122,7 +134,7 @@ def _quality(arguments: Namespace) -> int:
     suffix, status = suffix_of_stdin(arguments), DONE
     for path in arguments.meshes:
         try:
-            tell(about(path, mesh_of(path, suffix)))
+            tell(about_file(path, suffix))
         except (Img2triError, MemoryError) as error:
             complain(problem(error))
             status = BAD

@@ -37,6 +37,7 @@ SAVE_OPTIONS = {
         SOLVERS,
         {"type": whole_number, "metavar": "1|2"},
     ),
+    "cells": SaveOption("--cells", "for solvers: wedges or tetrahedra, with --height (default wedges)", SOLVERS, {"metavar": "C"}),
     "deck": SaveOption("--deck", "write an analysis that runs (.inp)", (".inp",), {"action": "store_true", "default": None}),
     "plane": SaveOption("--plane", "stress or strain (.inp; default stress)", (".inp",), {"metavar": "P"}),
     "version": SaveOption("--msh-version", "4.1 or 2.2 (.msh; default 4.1)", (".msh",), {"metavar": "V"}),
@@ -63,8 +64,9 @@ def save_options(arguments: Namespace, suffixes: Collection[str]) -> dict[str, d
     for name in ("layers", "order"):
         if name in given:
             integer(name, given[name], least=1)
-    if "layers" in given and "height" not in given:
-        raise ParameterError("layers: expected with --height, of which they are layers, found none")
+    for name in ("layers", "cells"):
+        if name in given and "height" not in given:
+            raise ParameterError(f"{name}: expected with --height, which makes a solid, found none")
     for name in given:
         homes = SAVE_OPTIONS[name].suffixes
         if homes and not set(homes) & set(suffixes):

@@ -9,7 +9,7 @@ from img2tri.cli.save_arguments import SAVE_OPTIONS
 from img2tri.options import OPTIONS
 
 FLAGS = {name: flag_of(name, option) for name, option in OPTIONS.items()}
-FLAGS |= {name: option.flag for name, option in SAVE_OPTIONS.items()} | {"workers": "--workers"}
+FLAGS |= {name: option.flag for name, option in SAVE_OPTIONS.items()} | {"workers": "--workers", "scheduler": "--scheduler"}
 IN_PYTHON = ("np.", "image[", "numpy")  # advice with these is for those who hold an array
 
 

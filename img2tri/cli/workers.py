@@ -1,181 +1,70 @@
-"""Many jobs -> their outcomes, in the order of the jobs: one after the other, or by several processes at once.
-
-Each process is a fresh one, as the libraries behind the mesh do not bear to be forked, and has a pipe of its own, over which jobs go in
-and outcomes come back. A pipe that closes tells which process has died, and so which image is to blame; a pool of the standard library
-would give up all jobs then. The processes hear nothing of Ctrl-C: they are ended from here.
-"""
+"""Many jobs -> their outcomes, in the order of the jobs: one after the other here, or several at once by the workers of `img2tri.many`."""
 
 from __future__ import annotations
 
-import multiprocessing
-import signal
-import sys
-import time
-import traceback
-from collections import deque
+import os
+from argparse import Namespace
 from collections.abc import Callable, Generator, Iterator, Sequence
-from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from contextlib import closing, contextmanager
+from dataclasses import replace
 from functools import partial
-from multiprocessing import resource_tracker
-from multiprocessing.connection import Connection, wait
-from multiprocessing.context import SpawnProcess
-from typing import Any
 
 from img2tri.cli.job import Job, Outcome
 from img2tri.cli.meshing_job import held, make
-from img2tri.errors import ParameterError
-
-GRACE = 2.0  # seconds for workers to tidy up
-
-
-@dataclass
-class _Worker:
-    """A process, our end of its pipe, and the number of the job it does."""
-
-    process: SpawnProcess
-    pipe: Connection[Any, Any]
-    number: int = -1
+from img2tri.errors import ParameterError, integer
+from img2tri.many.in_order import in_order
+from img2tri.many.workers import Workers, local_workers
 
 
-def run(jobs: Sequence[Job], workers: int, progress: Callable[[int, str, float], None]) -> Generator[Outcome]:
+@contextmanager
+def workers_of(arguments: Namespace, jobs: int) -> Iterator[Workers]:
+    """Find the workers that were asked for."""
+    if arguments.scheduler is None and arguments.scheduler_file is None:
+        yield local_workers(min(integer("workers", 1 if arguments.workers is None else arguments.workers, least=1), max(1, jobs)))
+        return
+    if arguments.workers is not None:
+        raise ParameterError("workers: expected without a scheduler, whose cluster has its own")
+    from img2tri.many.dask_cluster import Cluster, connected_to
+
+    with connected_to(arguments.scheduler, arguments.scheduler_file) as client:
+        yield Cluster(client)
+
+
+def run(jobs: Sequence[Job], where: Workers, progress: Callable[[int, str, float], None]) -> Generator[Outcome]:
     """Do jobs.
 
     Parameters
     ----------
     jobs
         What is to be done.
-    workers
-        How many at once. 1 does them in this process. The outcomes are the same.
+    where
+        The workers; the outcomes are the same for all.
     progress
-        Called with the number of a job, the name of a stage and the fraction done; what it raises ends the work.
+        Called with the number of a job, the name of a stage (where it is done here) and the fraction done; what it raises ends the work.
 
     Yields
     ------
     Outcome
-        One for each job, in their order, as soon as it and those before it are there. If a worker dies, the job it did has failed.
-
-    Raises
-    ------
-    ParameterError
-        If the system does not allow so many processes.
+        One for each job, in their order, as soon as it and those before it are there.
     """
-    if min(workers, len(jobs)) > 1:
-        yield from _at_once(jobs, workers, progress)
+    if where.window == 1:
+        for number, job in enumerate(jobs):
+            outcome = make(job, partial(progress, number))
+            progress(number, "done", 1.0)
+            yield outcome
         return
-    for number, job in enumerate(jobs):
-        outcome = make(job, partial(progress, number))
-        progress(number, "done", 1.0)
-        yield outcome
+    progress(0, "meshing", 0.0)
+    things = (held(replace(job, folder=os.getcwd())) for job in jobs)  # stdin is read here, where it is
+    with closing(in_order(_elsewhere, things, where, lost=_lost)) as outcomes:
+        for number, outcome in enumerate(outcomes):
+            progress(number, "done", 1.0)
+            yield outcome
 
 
-def _at_once(jobs: Sequence[Job], workers: int, progress: Callable[[int, str, float], None]) -> Generator[Outcome]:
-    """Keep so many workers busy until all is done."""
-    ready = [held(job) for job in jobs]  # stdin is read here, where it is
-    done = {number: job for number, job in enumerate(ready) if isinstance(job, Outcome)}
-    waiting = deque((number, job) for number, job in enumerate(ready) if isinstance(job, Job))
-    busy: dict[Connection[Any, Any], _Worker] = {}
-    started: list[_Worker] = []
-    try:
-        for number in range(len(jobs)):
-            while number not in done:
-                while waiting and len(busy) < workers:
-                    started.append(_start())
-                    busy[started[-1].pipe] = started[-1]
-                    _give(started[-1], *waiting.popleft())
-                for pipe in wait(list(busy)):
-                    worker = busy[pipe]  # type: ignore[index]
-                    answer = _answer(worker, jobs)
-                    if not isinstance(answer, Outcome):
-                        progress(worker.number, *answer)
-                        continue
-                    done[worker.number] = answer
-                    progress(worker.number, "done", 1.0)
-                    if waiting and not worker.pipe.closed:
-                        _give(worker, *waiting.popleft())
-                    else:
-                        del busy[worker.pipe]
-            yield done.pop(number)
-    finally:
-        _end(started)
+def _elsewhere(thing: Job | Outcome) -> Outcome:
+    return thing if isinstance(thing, Outcome) else make(thing, lambda *_: None)
 
 
-def _start() -> _Worker:
-    context = multiprocessing.get_context("spawn")
-    try:
-        ours, theirs = context.Pipe()
-        process = context.Process(target=_work, args=(theirs,), daemon=True)
-        with _ctrl_c_held_back():
-            process.start()
-    except OSError as refusal:
-        raise ParameterError(f"workers: expected no more than the system allows, found that it refuses another ({refusal})") from refusal
-    theirs.close()
-    return _Worker(process, ours)
-
-
-def _give(worker: _Worker, number: int, job: Job) -> None:
-    worker.number = number
-    with suppress(OSError):  # a worker that has died is noticed when its answer is waited for
-        worker.pipe.send(job)
-
-
-def _answer(worker: _Worker, jobs: Sequence[Job]) -> Outcome | tuple[str, float]:
-    """Return the outcome of the job of a worker, or how far it is."""
-    image = jobs[worker.number].image
-    try:
-        answer: Outcome | tuple[str, float] | str = worker.pipe.recv()
-    except (EOFError, OSError):
-        worker.pipe.close()
-        worker.process.join(GRACE)
-        return Outcome(image, problem=_fate(worker.process.exitcode))
-    if isinstance(answer, str):
-        raise RuntimeError(f"{image}: a mistake in a worker\n{answer}")
-    return answer
-
-
-def _fate(status: int | None) -> str:
-    how = f"ended with status {status}"
-    if status is not None and status < 0:
-        with suppress(ValueError):
-            how = f"was ended by {signal.Signals(-status).name}"
-    return f"the process that meshed it {how}; if memory ran out, fewer --workers need less"
-
-
-def _end(workers: Sequence[_Worker]) -> None:
-    """End all workers: those that do nothing, at once; those that write a file, when they have tidied up."""
-    for worker in workers:
-        worker.pipe.close()
-        worker.process.terminate()
-    deadline = time.monotonic() + GRACE
-    for worker in workers:
-        worker.process.join(max(0.0, deadline - time.monotonic()))
-        worker.process.kill()
-        worker.process.join()
-
-
-@contextmanager
-def _ctrl_c_held_back() -> Iterator[None]:
-    """Start a process within, and it never hears of Ctrl-C, which a terminal sends to all; here it comes afterwards."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    resource_tracker.ensure_running()  # would let Ctrl-C through if it had yet to be started
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def _work(pipe: Connection[Any, Any]) -> None:
-    """Do jobs until there are no more: what a worker runs."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit())  # files that are not whole yet go
-    with suppress(EOFError, OSError):  # nobody is there any more
-        while True:
-            job = pipe.recv()
-            try:
-                answer: Outcome | str = make(job, lambda stage, fraction: pipe.send((stage, fraction)))
-            except Exception:
-                answer = traceback.format_exc()
-            pipe.send(answer)
+def _lost(thing: Job | Outcome) -> Outcome:
+    """Say what became of a job that took its worker with it."""
+    return Outcome(thing.image, problem="the process that meshed it ended twice; if memory ran out, fewer --workers need less")

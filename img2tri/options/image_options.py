@@ -60,6 +60,22 @@ class ReadOptions(TypedDict, total=False):
     ]
 
 
+class WidthOptions(TypedDict, total=False):
+    """Options of `raster.metadata.wanted_width.as_wide_as`."""
+
+    width: Annotated[
+        float | None,
+        Option(
+            None,
+            "Width of the whole image in world units; the size of a pixel follows. In place of `spacing`.",
+            none="as `spacing` says",
+            check=o.real(above=0),
+            typed=typed.number,
+            sign="W",
+        ),
+    ]
+
+
 class PartOptions(TypedDict, total=False):
     """Options of `raster.labels.cropping.crop`."""
 

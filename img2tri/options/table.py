@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar, cast, get_args, get_type_hints
 
 from img2tri.errors import FileError, ParameterError, UnknownOptionError
-from img2tri.options.image_options import NameOptions, PartOptions, ReadOptions, SegmentOptions, SpeckOptions
+from img2tri.options.image_options import NameOptions, PartOptions, ReadOptions, SegmentOptions, SpeckOptions, WidthOptions
 from img2tri.options.mesh_options import (
     FillOptions,
     OutlineOptions,
@@ -35,7 +35,8 @@ G = TypeVar("G")
 
 
 class MeshOptions(
-    RecipeOptions, ReadOptions, PartOptions, SegmentOptions, SpeckOptions, NameOptions, OutlineOptions, SymmetryOptions, SizeOptions,
+    RecipeOptions, ReadOptions, WidthOptions, PartOptions, SegmentOptions, SpeckOptions, NameOptions, OutlineOptions, SymmetryOptions,
+    SizeOptions,
     ToleranceOptions, FillOptions, SmoothOptions, PaperOptions, total=False,
 ):  # fmt: skip
     """Every option of `mesh_image`, for functions that hand them on: ``**options: Unpack[MeshOptions]``."""
@@ -44,7 +45,7 @@ class MeshOptions(
 # In the order of the documentation: groups under the headings of the command line.
 HEADINGS: dict[str, tuple[Any, ...]] = {
     "what is meshed": (SegmentOptions, SpeckOptions, PartOptions),
-    "where it lies": (ReadOptions, NameOptions),
+    "where it lies": (ReadOptions, WidthOptions, NameOptions),
     "how it is meshed": (RecipeOptions, OutlineOptions, SymmetryOptions, SizeOptions, ToleranceOptions, FillOptions, SmoothOptions),
     "the paper's recipes only": (PaperOptions,),
 }

@@ -23,11 +23,11 @@ from img2tri.raster.in_memory.pyvista_image import from_image_data, is_image_dat
 from img2tri.raster.in_memory.simpleitk_image import from_simpleitk, is_simpleitk
 from img2tri.raster.in_memory.xarray_image import from_data_array, is_data_array, knows_its_place
 from img2tri.raster.metadata.nodata import either, present
+from img2tri.raster.metadata.wanted_width import FINEST
 from img2tri.types import Frame, Picture
 
 Pair = tuple[float, float]
 
-FINEST = 1e-4  # px: how exact places in the world must be
 CARRY_SPACING = ("DICOM", "NIfTI", "NRRD", "MetaImage")  # formats made to say how large a pixel is
 
 

@@ -25,6 +25,7 @@ import img2tri
 from img2tri import mesh_image, pipeline
 from img2tri.cli import main, printing
 from img2tri.options import OPTIONS
+from img2tri.views.formats.readers.read_any import FILE_READERS
 from img2tri.views.formats.save_load import SURFACE_FORMATS, load
 from img2tri.views.formats.solvers.save_for_solvers import EXPORTS
 from img2tri.views.formats.svg_dxf_geojson import DRAWING_FORMATS as DRAWINGS
@@ -66,6 +67,7 @@ ARRIVE = {
     "max_pixels": (["--max-pixels", "1000"], 1000),
     "names": (["--name", "1=bone", "--name", "2=a = b"], {1: "bone", 2: "a = b"}),
     "seed": (["--seed", "7"], 7),
+    "width": (["--width", "80"], 80.0),
     "step": (["--step", "2%"], "2%"),
     "n_boundary_points": (["--n-boundary-points", "40"], 40),
     "n_interior_points": (["--n-interior-points", "0"], 0),
@@ -182,7 +184,7 @@ def test_help_lists_the_formats(capsys):
             main([command, "--help"])
         listed.append(set(re.findall(r"(?<![\w.])\.[a-z0-9]+", capsys.readouterr().out)))
     assert listed[0] >= {*SURFACE_FORMATS, *EXPORTS, *DRAWINGS}
-    assert listed[1] == {suffix for suffix, form in SURFACE_FORMATS.items() if form.read} | {".msh", ".bdf"}
+    assert listed[1] == set(FILE_READERS)
 
 
 def test_labels_before_the_image_does_not_swallow_it(arrived, disc):
@@ -452,9 +454,24 @@ def test_quality_counts_triangles_that_are_turned_over(tmp_path, capsys):
     assert "1 turned over" in capsys.readouterr().out
 
 
+def test_quality_measures_solids(disc, tmp_path, capsys):
+    made = [("surface.stl", [], "surface of a solid"), ("wedges.msh", [], "wedge"), ("tetra.inp", ["--cells", "tetrahedra"], "tetra")]
+    for name, typed, what in made:
+        path = str(tmp_path / name)
+        assert main(["mesh", disc, "--quiet", "--height", "2", "--edge-length", "6", "-o", path, *typed]) == 0
+        assert main(["quality", path]) == 0
+        out, err = capsys.readouterr()
+        assert err == ""
+        assert out.startswith(f"{path}: ")
+        assert what in out.splitlines()[0]
+        assert "0 <= z <= 2" in out.splitlines()[0]
+        least = next(line for line in out.splitlines() if line.startswith("scaled_jacobian")).split()[1]
+        assert 0 < float(least) <= 1
+
+
 def test_a_bad_mesh_does_not_stop_the_others(disc, tmp_path, capsys):
-    solid, flat = str(tmp_path / "solid.stl"), str(tmp_path / "flat.stl")
-    main(["mesh", disc, "--quiet", "--height", "2", "-o", solid])
+    solid, flat = str(tmp_path / "solid.msh"), str(tmp_path / "flat.stl")
+    Path(solid).write_text("no mesh")
     main(["mesh", disc, "--quiet", "-o", flat])
     assert main(["quality", solid, str(tmp_path / "none.stl"), flat]) == 2
     out, err = capsys.readouterr()

@@ -40,10 +40,18 @@ class Decoded:
     missing: Bools | None = None
 
 
+class NoSuchPageError(ParameterError):
+    """A file has fewer pages than the one asked for; `pages` is how many."""
+
+    pages = 1
+
+
 def check_page(source: Source, page: int, pages: int, width: int, height: int, max_pixels: int) -> dict[str, Any]:
     """Check page and size before anything is decoded, and note the page."""
     if page >= pages:
-        raise ParameterError(f"page: expected 0 to {pages - 1} in {str(source)!r}, found {shown(page)}")
+        beyond = NoSuchPageError(f"page: expected 0 to {pages - 1} in {str(source)!r}, found {shown(page)}")
+        beyond.pages = pages
+        raise beyond
     if width * height > max_pixels:
         raise ImageError(
             f"image: expected at most max_pixels={max_pixels} pixels, found {width} x {height} in {str(source)!r}; "

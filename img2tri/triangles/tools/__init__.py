@@ -3,6 +3,7 @@
 mesh_checks          Arrays said to be a mesh -> arrays safe to index with, or an error that says what is wrong.
 topology             Edges, boundary, interfaces, neighbours.
 triangle_metrics     The measures of one triangle: q, smallest angle, radius ratio and Verdict's others.
+pixel_means          The mean of an image over each triangle, exact.
 quality_summary      All triangles measured; their summary and histogram.
 inversion_guard      Moves taken back where they would turn a triangle over or lower the worst angle.
 laplacian_smoothing  Smoothing with uniform weights (the paper's) and with cotangent weights.

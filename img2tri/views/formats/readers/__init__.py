@@ -1,6 +1,7 @@
 """Files read back: the bytes of a file -> `img2tri.views.formats.readers.found.Found`, with regions, names and sets.
 
 read_any                  any file by its suffix, with all it holds
+flat_mesh                 a plane mesh of any format: its arrays, where its image lies, the names its user gave
 found                     what a file holds: the record all readers return, and the labels in names and tables
 read_stl_ply_obj_off_glb  the formats trimesh knows
 read_vtp_vtu              VTP and VTU

@@ -1,48 +1,43 @@
-"""Images as typed -> names of images: folders become the images in them, patterns that no shell expanded the names they match."""
+"""Names as a user gives them -> names of images: folders become the images in them, patterns that no shell expanded what they match."""
 
 from __future__ import annotations
 
 import glob
 import os
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 
-from img2tri.cli.stdin_stdout import DASH
 from img2tri.errors import FileError
 
-STORES = (".zarr", ".ome.zarr")  # folders that are one image
+STORES = (".zarr",)  # folders that are one image, or a group of them
 IMAGE_SUFFIXES = (
     *(".png", ".tif", ".tiff", ".jpg", ".jpeg", ".bmp", ".gif", ".webp", ".pgm", ".ppm", ".pbm", ".pnm", ".jp2", ".tga", ".ico", ".avif"),
     *(".dcm", ".nii", ".nii.gz", ".npy", ".npz", ".nrrd", ".nhdr", ".mha", ".mhd"),
 )
 
 
-def expanded(typed: Sequence[str]) -> list[str]:
-    """Return the names of images, in the order typed; those of a folder or pattern sorted, with numbers in order of size.
+def images_named(name: str) -> list[str]:
+    """Return the names of the images that a name stands for; those of a folder or pattern sorted, with numbers in order of size.
 
     Raises
     ------
     FileError
         If a pattern matches nothing, or a folder has no image.
     """
-    return [name for text in typed for name in _names(text)]
-
-
-def _names(text: str) -> list[str]:
-    if text == DASH or os.path.isfile(text):
-        return [text]
-    if os.path.isdir(text) and not text.rstrip(os.sep).lower().endswith(STORES):
-        found = sorted((str(path) for path in Path(text).iterdir() if _is_image(path)), key=by_number)
+    if os.path.isfile(name):
+        return [name]
+    if os.path.isdir(name) and not name.rstrip(os.sep).lower().endswith(STORES):
+        found = sorted((str(path) for path in Path(name).iterdir() if _is_image(path)), key=by_number)
         if not found:
-            raise FileError(f"{text!r} is a folder without images; expected files that end in {', '.join(IMAGE_SUFFIXES[:4])} and others")
+            raise FileError(f"{name!r} is a folder without images; expected files that end in {', '.join(IMAGE_SUFFIXES[:4])} and others")
         return found
-    if glob.has_magic(text) and not os.path.exists(text):
-        found = sorted(glob.glob(text, recursive=True), key=by_number)
+    if glob.has_magic(name) and not os.path.exists(name):
+        found = sorted(glob.glob(name, recursive=True), key=by_number)
         if not found:
-            raise FileError(f"image: expected files that match {text!r}, found none")
+            raise FileError(f"image: expected files that match {name!r}, found none")
         return found
-    return [text]
+    return [name]
 
 
 def _is_image(path: Path) -> bool:
