@@ -122,7 +122,8 @@ def read(
     if missing is not None:
         notes["missing"] = int(np.count_nonzero(missing))
     h, w = values.shape[:2]
-    frame = Frame((h, w), size, corner, upward)
+    height = (found.height or 0.0) if isinstance(spacing, str) else 0.0  # of a slice in its volume, with the spacing of the file
+    frame = Frame((h, w), size, corner, upward, height)
     _check_precision(frame)
     return Picture(values, frame, name, notes, missing)
 

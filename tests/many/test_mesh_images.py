@@ -94,6 +94,37 @@ def test_each_page_is_an_image(tmp_path):
     assert [name for name, _ in mesh_images(path, workers=1, page=1)] == [str(path)]
 
 
+def nifti(path, volume):
+    nibabel = pytest.importorskip("nibabel")
+    nibabel.save(nibabel.Nifti1Image(volume, np.diag([0.5, 0.5, 2.0, 1])), path)
+
+
+def metaimage(path, volume):
+    sizes = " ".join(map(str, volume.shape))
+    head = f"NDims = 3\nDimSize = {sizes}\nElementType = MET_UCHAR\nElementSpacing = 0.5 0.5 2.0\nElementDataFile = LOCAL\n"
+    path.write_bytes(head.encode() + volume.tobytes(order="F"))
+
+
+def nrrd(path, volume):
+    sizes = " ".join(map(str, volume.shape))
+    head = f"NRRD0004\ntype: uint8\ndimension: 3\nsizes: {sizes}\nspacings: 0.5 0.5 2.0\nencoding: raw\n\n"
+    path.write_bytes(head.encode() + volume.tobytes(order="F"))
+
+
+@pytest.mark.parametrize(("suffix", "save"), [(".nii", nifti), (".mha", metaimage), (".nrrd", nrrd)])
+def test_slices_of_a_volume_lie_where_its_file_says(suffix, save, tmp_path):
+    volume = np.zeros((30, 30, 3), np.uint8)
+    volume[8:20, 6:22] = 1
+    path = tmp_path / f"volume{suffix}"
+    save(path, volume)
+    found = dict(mesh_images(path, workers=1))
+    assert [mesh.frame.z for mesh in found.values()] == [0, 2, 4]
+    assert {mesh.frame.spacing for mesh in found.values()} == {(0.5, 0.5)}
+    assert mesh_image(path, page=2).frame.z == 4
+    assert mesh_image(path, page=2, spacing=1).frame.z == 0
+    assert mesh_image(path, page=2, width=30).frame.z == 8
+
+
 def test_a_zarr_group_and_a_dask_array():
     zarr, dask = pytest.importorskip("zarr"), pytest.importorskip("dask.array")
     group = zarr.create_group(store={})

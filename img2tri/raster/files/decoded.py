@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -30,6 +32,8 @@ class Decoded:
         Where the lower-left corner of the image lies in the world, with y up, if the file knows it.
     missing
         (h, w) bool, pixels the file says are not there; None: none.
+    height
+        Of its plane above that of page 0, in `unit`, if the file is a volume that knows it.
     """
 
     values: Pixels
@@ -38,6 +42,13 @@ class Decoded:
     unit: str | None = "mm"
     corner: tuple[float, float] | None = None
     missing: Bools | None = None
+    height: float | None = None
+
+
+def plane_height(page: int, steps: Sequence[float]) -> float | None:
+    """Return how high a page of a volume lies; None where it is not known, or has more axes than three."""
+    step = steps[0] if len(steps) == 1 else math.nan
+    return page * step if math.isfinite(step) and step > 0 else None
 
 
 class NoSuchPageError(ParameterError):

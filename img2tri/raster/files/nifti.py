@@ -24,7 +24,7 @@ import numpy as np
 
 from img2tri.errors import FileError, ImageError
 from img2tri.raster.files.byte_sources import GZIP, Source
-from img2tri.raster.files.decoded import Decoded, check_page
+from img2tri.raster.files.decoded import Decoded, check_page, plane_height
 from img2tri.raster.metadata.pixel_size import positive_size
 
 MILLIMETRES = {"meter": 1000.0, "micron": 0.001}  # all else, unknown too, is taken as what it nearly always is
@@ -79,8 +79,10 @@ def decode_nifti(source: Source, page: int, max_pixels: int) -> Decoded:
         values = np.stack([values[name] for name in values.dtype.names], axis=2)
     scale = MILLIMETRES.get(noted.get_xyzt_units()[0], 1.0)
     # Sizes are kept in 32 bits; the shortest number that is the same there is the one meant: 0.7, not 0.699999988.
-    dx, dy = (scale * abs(float(str(zoom))) for zoom in noted.get_zooms()[:2])
-    return Decoded(np.ascontiguousarray(values.swapaxes(0, 1)[::-1]), notes, positive_size(dx, dy))
+    dx, dy, *steps = (scale * abs(float(str(zoom))) for zoom in noted.get_zooms()[:3])
+    flat = math.prod(others) == (others or [1])[0]  # no other axis than z
+    above = plane_height(page, steps if flat else [])
+    return Decoded(np.ascontiguousarray(values.swapaxes(0, 1)[::-1]), notes, positive_size(dx, dy), height=above)
 
 
 def _unpacked(library: Any, source: Source) -> Any:

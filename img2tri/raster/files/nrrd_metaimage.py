@@ -18,10 +18,10 @@ import numpy as np
 
 from img2tri.errors import FileError, ImageError
 from img2tri.raster.files.byte_sources import Source
-from img2tri.raster.files.decoded import Decoded, check_page
+from img2tri.raster.files.decoded import Decoded, check_page, plane_height
 from img2tri.raster.files.volumes import planes_of, read_plane
 from img2tri.raster.metadata.geotiff_imagej_ome import LENGTH_UNITS
-from img2tri.raster.metadata.pixel_size import PixelSize, positive_size
+from img2tri.raster.metadata.pixel_size import positive_size
 
 NRRD_START, METAIMAGE_STARTS = b"NRRD000", (b"ObjectType", b"NDims", b"Comment")
 LONGEST_HEADER = 2**20
@@ -61,7 +61,9 @@ def decode_nrrd(source: Source, page: int, max_pixels: int) -> Decoded:
     if names:
         notes["names"] = names
     unit, scale = _unit(fields.get("space units", ""))
-    return Decoded(values, notes, _nrrd_spacing(fields, layers=layers, scale=scale), unit)
+    lengths = [scale * length for length in _nrrd_lengths(fields, layers=layers)]
+    size = positive_size(lengths[0], lengths[1]) if len(lengths) > 1 else None
+    return Decoded(values, notes, size, unit, height=plane_height(page, lengths[2:]))
 
 
 def decode_metaimage(source: Source, page: int, max_pixels: int) -> Decoded:
@@ -84,8 +86,9 @@ def decode_metaimage(source: Source, page: int, max_pixels: int) -> Decoded:
             with _beside(source, fields["ElementDataFile"]) as data:
                 data.seek(max(0, int(fields.get("HeaderSize", 0))))
                 values, notes = _plane(data, source, dtype, sizes, page, max_pixels, encoding, layers=channels > 1)
-    spacing = fields.get("ElementSpacing", fields.get("ElementSize", "")).split()
-    return Decoded(values, {"format": "MetaImage"} | notes, positive_size(*map(float, spacing[:2])) if len(spacing) > 1 else None)
+    spacing = [float(n) for n in fields.get("ElementSpacing", fields.get("ElementSize", "")).split()]
+    size = positive_size(*spacing[:2]) if len(spacing) > 1 else None
+    return Decoded(values, {"format": "MetaImage"} | notes, size, height=plane_height(page, spacing[2:]))
 
 
 def _plane(
@@ -141,14 +144,12 @@ def _beside(source: Source, name: str) -> BinaryIO:
     return Source(name, source.path.parent / name).open()
 
 
-def _nrrd_spacing(fields: dict[str, str], *, layers: bool, scale: float) -> PixelSize | None:
-    """Return the size of a pixel: the lengths of the directions of x and y, or their spacings."""
+def _nrrd_lengths(fields: dict[str, str], *, layers: bool) -> list[float]:
+    """Return the lengths of the directions of the axes, or their spacings."""
     if "space directions" in fields:
         vectors = re.findall(r"none|\(([^)]*)\)", fields["space directions"])
-        lengths = [math.hypot(*map(float, vector.split(","))) for vector in vectors if vector]
-    else:
-        lengths = [float(n) for n in fields.get("spacings", "").split()][layers:]
-    return positive_size(lengths[0] * scale, lengths[1] * scale) if len(lengths) > 1 else None
+        return [math.hypot(*map(float, vector.split(","))) for vector in vectors if vector]
+    return [float(n) for n in fields.get("spacings", "").split()][layers:]
 
 
 def _unit(noted: str) -> tuple[str, float]:

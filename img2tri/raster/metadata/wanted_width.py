@@ -45,7 +45,7 @@ def as_wide_as(picture: Picture, width: float | None, *, spacing: object = None)
     size = (frame.spacing[0] * scale, frame.spacing[1] * scale)
     if not 1e-100 <= min(size) <= max(size) <= 1e100:
         raise ParameterError(f"width: expected pixels of 1e-100 to 1e100, found {shown(width)}; choose another unit")
-    wide = dataclasses.replace(frame, spacing=size)
+    wide = dataclasses.replace(frame, spacing=size, z=frame.z * scale)
     if math.ulp(max(map(abs, wide.bounds))) > FINEST * wide.pixel:
         raise ParameterError(f"width: expected pixels that numbers of 64 bits can part at {frame.corner}, found {wide.pixel:g} wide")
     notes = {name: note for name, note in picture.notes.items() if name != "units"}  # the file's are not those of the width
