@@ -138,7 +138,7 @@ def _measured(name: str, path: str | Path) -> list[str]:
     try:
         return about(name, load_mesh(path))
     except NotFlatError as solid:
-        from img2tri.views.objects.solid_quality import solid_table
+        from img2tri.views.formats.readers.solid_quality import solid_table
 
         found = solid.found
         head, *table = solid_table(found.points, found.cells, found.kind)

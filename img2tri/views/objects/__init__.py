@@ -3,7 +3,6 @@
 What all views start from:
 
     flat_or_extruded  checks the arrays; the triangles in space: flat at a height z, or the closed surface of a solid
-    solid_quality     cells in space -> a table of their quality
     side_twins        triangles -> the same edge as the neighbour has it
     extrusion         triangles and a height -> the closed surface: bottom, top and walls
     body_per_region   one closed body for each region, for printing in several materials; a trimesh.Scene of them
