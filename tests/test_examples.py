@@ -150,3 +150,12 @@ def test_many_images_on_a_cluster(tmp_path):
     assert found["top"] > 4
     assert found["missed"] >= 1
     assert len(list(tmp_path.glob("*.vtp"))) == 12 - found["missed"]
+
+
+@pytest.mark.filterwarnings("ignore")  # those of distributed, when its processes end
+def test_larger_than_memory(tmp_path):
+    pytest.importorskip("distributed")
+    found = run("15_larger_than_memory", tmp_path)
+    assert found["warnings"] == 0
+    assert found["in_parts"] == found["triangles"] > 3_000
+    assert abs(found["area_error"]) < 1e-4
