@@ -163,7 +163,8 @@ def _in_pixels(name: str, area: bool | float | str | None, frame: Frame) -> floa
 def _with_paper_threshold(o: MeshOptions) -> SegmentOptions:
     """Return how regions are found; the paper's level is its own."""
     zones = of(SegmentOptions, o)
-    if o["recipe"] != "conforming" and all(o[name] in (None, False) for name in ("threshold", "labels", "colors", "absorb")):
+    # A threshold of 0 is one: it equals False, but is not it.
+    if o["recipe"] != "conforming" and all(o[name] is None or o[name] is False for name in ("threshold", "labels", "colors", "absorb")):
         zones["threshold"] = PAPER_THRESHOLD
     return zones
 
