@@ -150,7 +150,8 @@ def _asked_triangles(zones: Segmentation, frame: Frame, o: MeshOptions) -> float
     """Return how many triangles of the edge length fill the image; None where the length is left open or differs from place to place."""
     if not isinstance(o["edge_length"], (int, float, str)):
         return None
-    return zones.labels.size * math.prod(frame.spacing) * 4 / math.sqrt(3) / frame.length("edge_length", o["edge_length"]) ** 2
+    length = min(max(frame.length("edge_length", o["edge_length"]) / frame.pixel, 1e-100), 1e100)  # so that its square is a number
+    return zones.labels.size * math.prod(frame.spacing) / frame.pixel**2 * 4 / math.sqrt(3) / length**2
 
 
 def _in_pixels(name: str, area: bool | float | str | None, frame: Frame) -> float | None:
@@ -203,7 +204,8 @@ def _chosen(o: MeshOptions, picture: Picture, zones: Segmentation, sizes: Sizes,
 def _check_found(outlines: Outlines, zones: Segmentation, o: MeshOptions, removed: int) -> None:
     """Refuse an image with nothing to mesh, and names of labels it does not have."""
     if len(outlines.labels) == 1:
-        raise ImageError(f"image: expected pixels to mesh, found none{_advice(zones.threshold, removed)}")
+        absorbed = "" if o["absorb"] is None else ", and absorb="
+        raise ImageError(f"image: expected pixels to mesh, found none{_advice(zones.threshold, removed)}{absorbed}")
     for named in o["names"] or {}:
         if named not in outlines.labels[1:]:
             raise ParameterError(f"names: expected labels of the image, found {named}; it has {outlines.labels[1:21].tolist()}")
@@ -222,4 +224,5 @@ def _advice(level: Level | None, removed: int) -> str:
         return f"; {removed} were removed as too small; lower min_area="
     if level is None:
         return ", only background; see background="
-    return f" above the threshold {level.value:g} ({level.how}); try another threshold=, or invert=True"
+    value = f"{level.value:g}" if isinstance(level.value, (int, float)) else shown(level.value)
+    return f" above the threshold {value} ({level.how}); try another threshold=, or invert=True"
