@@ -146,7 +146,7 @@ def one_label_or_more(name: str, value: Any) -> list[int]:
 
 def one_level_or_more(name: str, value: Any) -> Any:
     """Check for a number, a word, or rising numbers, of which a list is made."""
-    if isinstance(value, str) or not isinstance(value, Iterable) or getattr(value, "ndim", 1) == 0:
+    if isinstance(value, (str, bytes, bytearray)) or not isinstance(value, Iterable) or getattr(value, "ndim", 1) == 0:
         if isinstance(value, str) and value not in ("otsu", "alpha"):
             raise ParameterError(f"{name}: expected a number, 'otsu', 'alpha' or None, found {value!r}")
         return value if isinstance(value, str) else finite(name, value)
