@@ -243,3 +243,23 @@ class ChainIndex:
         followed = np.ones(len(self.indices), bool)
         followed[self.last] = False
         return np.flatnonzero(followed)
+
+
+def label_changes(flat: NDArray[Any], shift: int) -> Ints:
+    """Return all i with ``flat[i] != flat[i + shift]``, comparing eight bytes at a time.
+
+    Examples
+    --------
+    >>> label_changes(np.array([5, 5, 7, 7, 7], np.uint8), 1)
+    array([1])
+    """
+    n, size = len(flat) - shift, flat.itemsize
+    if n <= 0:
+        return np.zeros(0, np.int64)
+    words = n * size // 8
+    here = np.frombuffer(flat, np.uint64, words)
+    there = np.frombuffer(flat, np.uint64, words, offset=shift * size)
+    differ = np.flatnonzero(here != there)
+    per_word = 8 // size
+    candidates = np.concatenate([(differ[:, None] * per_word + np.arange(per_word)).reshape(-1), np.arange(words * per_word, n)])
+    return np.asarray(candidates[flat[candidates] != flat[candidates + shift]])

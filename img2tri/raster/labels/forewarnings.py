@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from img2tri.arrays import Ints, label_changes
 from img2tri.errors import ConfettiWarning, ConnectivityWarning, Img2triWarning, SizeWarning
 from img2tri.raster.labels.connected_components import find_components
 from img2tri.raster.labels.label_maps import distinct
@@ -44,7 +45,7 @@ def forewarnings(found: Segmentation, *, connectivity: int, asked: float | None)
     >>> [str(w)[:60] for w in forewarnings(Segmentation(diagonal, 0), connectivity=4, asked=None)]
     ['label 1 is 30 pieces that touch at corners of pixels only; c']
     """
-    labels = found.labels
+    labels = np.ascontiguousarray(found.labels)
     yield from _far_more(labels, found.background, USUALLY_ASKED if asked is None else asked)
     yield from _in_pieces(labels, found.background, connectivity)
     if labels.dtype != bool:
@@ -53,12 +54,11 @@ def forewarnings(found: Segmentation, *, connectivity: int, asked: float | None)
 
 def predicted_triangles(labels: NDArray[Any], background: int | None, asked: float) -> float:
     """Return about how many triangles a label map takes."""
-    sides = 0.0
-    for one, other in ((labels[1:], labels[:-1]), (labels[:, 1:], labels[:, :-1])):
-        apart = one != other
-        count = np.count_nonzero(apart)
-        single = 0 if background is None else np.count_nonzero(apart & ((one == background) | (other == background)))
-        sides += ONE_SIDED * single + TWO_SIDED * (count - single)
+    flat, sides = labels.reshape(-1), 0.0
+    for at, step in _changes(labels):
+        one, other = flat[at], flat[at + step]
+        single = 0 if background is None else np.count_nonzero((one == background) | (other == background))
+        sides += ONE_SIDED * single + TWO_SIDED * (len(at) - single)
     return asked + sides
 
 
@@ -72,8 +72,11 @@ def _far_more(labels: NDArray[Any], background: int | None, asked: float) -> Ite
 
 
 def _in_pieces(labels: NDArray[Any], background: int | None, connectivity: int) -> Iterator[Img2triWarning]:
-    a, b, c, d = labels[:-1, :-1], labels[:-1, 1:], labels[1:, :-1], labels[1:, 1:]
-    if np.count_nonzero((a == d) & (b == c) & (a != b)) < PIECES:
+    (at, _), (_, w) = _changes(labels)
+    # a b    at, and the pixel right of it; a checkerboard has d = a and c = b
+    # c d
+    at, flat = at[at < labels.size - w], labels.reshape(-1)
+    if np.count_nonzero((flat[at] == flat[at + w + 1]) & (flat[at + 1] == flat[at + w])) < PIECES:
         return
     counts = []
     for way in (connectivity, 12 - connectivity):
@@ -86,6 +89,13 @@ def _in_pieces(labels: NDArray[Any], background: int | None, connectivity: int) 
             f"label {values[worst]} is {here[worst]:,} pieces that touch at corners of pixels only; "
             f"connectivity={12 - connectivity} joins them to {there[worst]:,}"
         )
+
+
+def _changes(labels: NDArray[Any]) -> tuple[tuple[Ints, int], tuple[Ints, int]]:
+    """Flat places of the pixels that differ from the one right of them, and from the one below, each with the step to that."""
+    flat, w = labels.reshape(-1), labels.shape[1]
+    right = label_changes(flat, 1)
+    return (right[right % w != w - 1], 1), (label_changes(flat, w), w)
 
 
 def _only_edges(labels: NDArray[Any]) -> Iterator[Img2triWarning]:

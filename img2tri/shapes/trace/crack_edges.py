@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from img2tri.arrays import Bools, Ints
+from img2tri.arrays import Bools, Ints, label_changes
 
 NODE = -1
 
@@ -123,26 +123,6 @@ def find_crack_edges(labels: NDArray[Any], *, background: int | None = 0, upward
     successor = _successors(tail, head, on_frame, (h, w), pixels, connectivity)
     values = np.concatenate([[0], seen[number > 0].astype(np.int64)])
     return CrackEdges((h, w), tail, head, left, right, successor, on_frame, values)
-
-
-def label_changes(flat: NDArray[Any], shift: int) -> Ints:
-    """Return all i with ``flat[i] != flat[i + shift]``, comparing eight bytes at a time.
-
-    Examples
-    --------
-    >>> label_changes(np.array([5, 5, 7, 7, 7], np.uint8), 1)
-    array([1])
-    """
-    n, size = len(flat) - shift, flat.itemsize
-    if n <= 0:
-        return np.zeros(0, np.int64)
-    words = n * size // 8
-    here = np.frombuffer(flat, np.uint64, words)
-    there = np.frombuffer(flat, np.uint64, words, offset=shift * size)
-    differ = np.flatnonzero(here != there)
-    per_word = 8 // size
-    candidates = np.concatenate([(differ[:, None] * per_word + np.arange(per_word)).reshape(-1), np.arange(words * per_word, n)])
-    return np.asarray(candidates[flat[candidates] != flat[candidates + shift]])
 
 
 def _region_numbers(seen: NDArray[Any], background: int | None) -> Ints:

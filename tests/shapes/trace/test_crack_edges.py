@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from strategies import QUICK
 
-from img2tri.shapes.trace.crack_edges import NODE, find_crack_edges, label_changes
+from img2tri.arrays import label_changes
+from img2tri.shapes.trace.crack_edges import NODE, find_crack_edges
 
 OUTSIDE = -1
 NOTHING = frozenset({0, OUTSIDE})
