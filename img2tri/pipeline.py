@@ -12,20 +12,20 @@ from typing import Any, Unpack
 
 from img2tri.errors import ImageError, ParameterError, shown
 from img2tri.mesh import TriangleMesh
+from img2tri.options.all_options import MeshOptions, checked, of, plain
 from img2tri.options.describing import with_options
 from img2tri.options.image_options import ReadOptions, SegmentOptions
 from img2tri.options.mesh_options import FillOptions, OutlineOptions, SizeOptions
 from img2tri.options.paper_options import PaperOptions
-from img2tri.options.table import MeshOptions, checked, of, plain
-from img2tri.raster.decisions import decisions
 from img2tri.raster.in_memory.image_hash import image_hash
 from img2tri.raster.labels.cropping import crop
-from img2tri.raster.labels.forewarnings import forewarnings
+from img2tri.raster.labels.early_warnings import early_warnings
 from img2tri.raster.labels.label_maps import label_colours
 from img2tri.raster.labels.otsu_threshold import Level
 from img2tri.raster.labels.segmentation import Segmentation, segment, without_specks
 from img2tri.raster.metadata.wanted_width import as_wide_as
 from img2tri.raster.reading import read
+from img2tri.raster.reading_notes import decisions
 from img2tri.recipes.conforming import Sizes, conform, trace_outlines, wanted_sizes
 from img2tri.recipes.mirrored import conform_symmetric
 from img2tri.shapes.mirror_symmetry import check_symmetric
@@ -139,7 +139,7 @@ def _teller(progress: Callable[[str, float], None] | None) -> Callable[[str, flo
 
 def _forewarn(zones: Segmentation, frame: Frame, o: MeshOptions, tell: Callable[[str, float], None]) -> list[str]:
     """Tell before the work what is hardly meant: as warnings, to who follows the progress, and in the report."""
-    told = list(forewarnings(zones, connectivity=o["connectivity"], asked=_asked_triangles(zones, frame, o)))
+    told = list(early_warnings(zones, connectivity=o["connectivity"], asked=_asked_triangles(zones, frame, o)))
     for warning in told:
         tell(str(warning), 0.1)
         warnings.warn(warning, stacklevel=3)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from img2tri.mesh import TriangleMesh
-    from img2tri.options.table import MeshOptions
+    from img2tri.options.all_options import MeshOptions
 
 
 def explore(image: Any, **options: Unpack[MeshOptions]) -> Any:

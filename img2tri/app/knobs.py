@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from img2tri.errors import ParameterError, shown
-from img2tri.options.table import GROUPS, OPTIONS, TYPES, nearest
+from img2tri.options.all_options import GROUPS, OPTIONS, TYPES, nearest
 
 _OWN = {"threshold", "labels", "background", "invert", "names", "edge_length", "gradation", "boundary_edge_length", "min_area", "largest"}
 CHOICES: dict[str, tuple[str, ...]] = {

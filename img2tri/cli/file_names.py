@@ -18,7 +18,7 @@ from img2tri.cli.save_arguments import save_options
 from img2tri.cli.stdin_stdout import DASH, STEM, check_stdin, check_stdout
 from img2tri.errors import FileError, ParameterError
 from img2tri.options import OPTIONS
-from img2tri.options.table import load_options
+from img2tri.options.all_options import load_options
 from img2tri.raster.files.image_names import images_named
 
 USUAL_FORMAT = ".ply"  # keeps all digits and the regions, and is read everywhere

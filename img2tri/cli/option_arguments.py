@@ -6,8 +6,8 @@ import re
 from argparse import SUPPRESS, ArgumentParser, BooleanOptionalAction
 from typing import Any
 
+from img2tri.options.all_options import GROUPS
 from img2tri.options.option import Option
-from img2tri.options.table import GROUPS
 
 
 def add_mesh_options(parser: ArgumentParser) -> None:

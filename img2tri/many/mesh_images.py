@@ -15,8 +15,8 @@ from img2tri.many.in_order import in_order
 from img2tri.many.sources import OneImage, each_image
 from img2tri.many.workers import Workers, local_workers
 from img2tri.mesh import TriangleMesh
+from img2tri.options.all_options import MeshOptions, checked
 from img2tri.options.describing import with_options
-from img2tri.options.table import MeshOptions, checked
 from img2tri.pipeline import mesh_image
 
 if TYPE_CHECKING:

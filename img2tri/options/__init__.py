@@ -2,7 +2,7 @@
 
     image_options   reading an image, finding its regions     mesh_options   outlines, edge lengths, triangles     paper_options
     option          the record of an entry, and the checks    typed          texts typed on the command line -> values
-    table           the entries by name: checks, groups for the stages, plain data for reports
+    all_options           the entries by name: checks, groups for the stages, plain data for reports
     spelling        options that differ from their defaults -> the command line and the Python that make the same mesh
     describing      the signature and the Parameters section of functions that have these options
 
@@ -12,6 +12,6 @@ the documentation, the command line and its help, the checks and the settings in
 
 from __future__ import annotations
 
-from img2tri.options.table import OPTIONS, MeshOptions
+from img2tri.options.all_options import OPTIONS, MeshOptions
 
 __all__ = ["OPTIONS", "MeshOptions"]

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from types import NoneType, UnionType
 from typing import Any, TypeVar, Union, get_args, get_origin
 
-from img2tri.options.table import OPTIONS, TYPES
+from img2tri.options.all_options import OPTIONS, TYPES
 
 F = TypeVar("F", bound=Callable[..., Any])
 

@@ -9,7 +9,7 @@ from img2tri.options import typed
 from img2tri.options.option import Option
 
 if TYPE_CHECKING:
-    from img2tri.shapes.sizes.size_field import EdgeLength
+    from img2tri.shapes.sizes.user_size_field import EdgeLength
 
 RECIPES = ("conforming", "structured", "unstructured")
 SMOOTHINGS = ("none", "uniform", "cotangent")

@@ -9,7 +9,7 @@ import shlex
 from collections.abc import Mapping
 from typing import Any
 
-from img2tri.options.table import OPTIONS
+from img2tri.options.all_options import OPTIONS
 
 
 def different(options: Mapping[str, Any]) -> dict[str, Any]:

@@ -27,7 +27,7 @@ from img2tri.shapes.simplify.tangential_relocation import relocate, slide_limits
 from img2tri.shapes.simplify.tolerance import split_near
 from img2tri.shapes.simplify.vertex_offsets import offset_vertices
 from img2tri.shapes.sizes.outline_sizes import by_chords, by_curvature, by_thickness, limit_growth
-from img2tri.shapes.sizes.size_field import EdgeLength, SizeField, size_field
+from img2tri.shapes.sizes.user_size_field import EdgeLength, SizeField, size_field
 from img2tri.shapes.trace.crack_edges import find_crack_edges
 from img2tri.shapes.trace.dual_edges import DualEdges, pixel_areas
 from img2tri.types import Frame, Outlines, RecipeMesh

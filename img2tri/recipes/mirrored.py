@@ -11,7 +11,7 @@ from img2tri.errors import ParameterError
 from img2tri.raster.labels.segmentation import Segmentation
 from img2tri.recipes.conforming import Sizes, conform
 from img2tri.shapes.mirror_symmetry import half_outlines
-from img2tri.shapes.sizes.size_field import SizeField
+from img2tri.shapes.sizes.user_size_field import SizeField
 from img2tri.shapes.trace.dual_edges import DualEdges
 from img2tri.types import Frame, Outlines, RecipeMesh
 

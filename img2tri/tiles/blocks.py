@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from img2tri.arrays import Floats, Ints, Points, as_complex, as_rows, runs
 from img2tri.certificate.outline_distance import SAMPLE_STEP, SegmentSet
 from img2tri.errors import Img2triError, MeshError
+from img2tri.options.all_options import MeshOptions, of
 from img2tri.options.mesh_options import FillOptions, OutlineOptions, SizeOptions
-from img2tri.options.table import MeshOptions, of
 from img2tri.raster.labels.segmentation import Segmentation
 from img2tri.recipes.conforming import conform, trace_outlines, wanted_sizes
 from img2tri.tiles.merging import merge

@@ -23,7 +23,7 @@ import numpy as np
 
 from img2tri.arrays import as_rows
 from img2tri.errors import FileError, Img2triError, integer
-from img2tri.options.table import plain
+from img2tri.options.all_options import plain
 from img2tri.tiles.blocks import mesh_block
 from img2tri.tiles.numbering import Seam, global_numbers, numbered_vertices
 from img2tri.tiles.outputs import FORMATS, Part, save_parts

@@ -15,7 +15,7 @@ from browser import browser
 from PIL import Image
 
 import img2tri
-from img2tri.options.table import load_options
+from img2tri.options.all_options import load_options
 
 pytest.importorskip("uvicorn")
 pytestmark = pytest.mark.tools

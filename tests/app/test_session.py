@@ -16,7 +16,7 @@ from img2tri.app.session import OvertakenError, Session
 from img2tri.cli.arguments import parse
 from img2tri.errors import ImageError, MeshError, ParameterError
 from img2tri.options import spelling
-from img2tri.options.table import OPTIONS
+from img2tri.options.all_options import OPTIONS
 from img2tri.raster.reading import read
 
 DISC = np.hypot(*np.mgrid[-30:30, -30:30] + 0.5) < 22

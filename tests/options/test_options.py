@@ -16,7 +16,7 @@ from img2tri import mesh_image
 from img2tri.cli import main
 from img2tri.errors import FileError, Img2triError, ParameterError
 from img2tri.options import OPTIONS
-from img2tri.options.table import GROUPS, HEADINGS, MeshOptions, checked, load_options, of, takes_none
+from img2tri.options.all_options import GROUPS, HEADINGS, MeshOptions, checked, load_options, of, takes_none
 
 DISC = specimens.disc(40, 15).astype(bool)
 GRAINS = np.repeat(np.repeat(np.array([[1, 2], [3, 1]]), 20, axis=0), 20, axis=1)

@@ -7,11 +7,11 @@ transparency          the alpha channel -> which pixels are there
 otsu_threshold        gray values -> a mask: a given level, the middle of two values, or Otsu's level
 colour_labels         a few flat colours, counted or listed -> a label map, and the mixes that place the edges
 flat_colours          which colours an image is made of, and which of them a pixel is, or is mixed of
-label_map_check       whether values look like a label map, which is not to be thresholded by mistake
+label_map_detection       whether values look like a label map, which is not to be thresholded by mistake
 label_maps            integers or colours -> a label map, and the label that is not meshed (the background)
 absorbed_labels       thin separators: the pixels of some labels given to their nearest neighbours
 cropping              the part of a picture within a box
 connected_components  the pieces of each region that hang together, and how they touch
 specks_and_holes      small components dropped, small holes filled, or only the largest component of each region kept
-forewarnings          what will come of a label map that is hardly meant, told before the work
+early_warnings          what will come of a label map that is hardly meant, told before the work
 """

@@ -10,5 +10,5 @@ strip                 What lies between outlines and core: triangulated, smoothe
 constrained_delaunay  Constrained Delaunay triangulation, regions by votes, and Ruppert's refinement.
 quality_smoothing     Vertices move so that triangles become equilateral; the worst angles first.
 valence_repair        Vertices with too many or too few triangles are split or removed.
-local_refinement      The safety net: Ruppert's refinement in a patch around too small angles.
+ruppert_refinement      The safety net: Ruppert's refinement in a patch around too small angles.
 """

@@ -11,7 +11,7 @@ its edges. The way:
               strip     constrained Delaunay triangulation of what lies between                   strip.py, constrained_delaunay.py
               smooth    move vertices; those on outlines may slide along these                    quality_smoothing.py
     finish    repair    too many or too few triangles at a vertex; smooth again                   valence_repair.py
-              refine    where an angle is still too small: Ruppert's refinement, in a patch       local_refinement.py
+              refine    where an angle is still too small: Ruppert's refinement, in a patch       ruppert_refinement.py
 
 Between the halves the caller, who knows the outlines, says where their points may be; `fill` does both and lets them stay.
 """
@@ -28,8 +28,8 @@ from img2tri.errors import ParameterError, finite, integer
 from img2tri.triangles.generate.constrained_delaunay import PslgError, check_pslg
 from img2tri.triangles.generate.graded_lattice import lengths_near
 from img2tri.triangles.generate.hexagonal_lattice import Lattice
-from img2tri.triangles.generate.local_refinement import refine_locally
 from img2tri.triangles.generate.pslg import Pslg
+from img2tri.triangles.generate.ruppert_refinement import refine_locally
 from img2tri.triangles.generate.size_function import SizeFunction
 from img2tri.triangles.generate.strip import RegionMesh, Strip, finish_strip, lay_strip, relax_strip, with_core
 

@@ -27,7 +27,7 @@ from numpy.typing import ArrayLike, NDArray
 from img2tri.arrays import Floats, Ints
 from img2tri.errors import MeshError
 from img2tri.views.objects.flat_or_extruded import surface
-from img2tri.views.objects.sets.grouping import grouped
+from img2tri.views.objects.sets.index_by_value import grouped
 from img2tri.views.objects.sets.named_sets import named_sets
 from img2tri.views.objects.sets.set_numbers import Z_MAX, Z_MIN, file_numbers, set_tags
 

@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any
 from img2tri.errors import FileError, MeshError
 from img2tri.views.formats.readers import read_inp as reading_inp
 from img2tri.views.formats.readers import read_msh_bdf as reading
-from img2tri.views.formats.readers.found import Found
+from img2tri.views.formats.readers.file_contents import Found
 from img2tri.views.formats.readers.read_xdmf import is_plain_xdmf, parse_xdmf
 from img2tri.views.formats.solvers.plain_text import MARK
 from img2tri.views.formats.solvers.save_for_solvers import export

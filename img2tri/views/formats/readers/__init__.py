@@ -1,9 +1,9 @@
-"""Files read back: the bytes of a file -> `img2tri.views.formats.readers.found.Found`, with regions, names and sets.
+"""Files read back: the bytes of a file -> `img2tri.views.formats.readers.file_contents.Found`, with regions, names and sets.
 
 read_any                  any file by its suffix, with all it holds
 flat_mesh                 a plane mesh of any format: its arrays, where its image lies, the names its user gave
 solid_quality             cells in space as a file holds them -> a table of their quality
-found                     what a file holds: the record all readers return, and the labels in names and tables
+file_contents                     what a file holds: the record all readers return, and the labels in names and tables
 read_stl_ply_obj_off_glb  the formats trimesh knows
 read_vtp_vtu              VTP and VTU
 read_vtkhdf               VTKHDF

@@ -12,7 +12,7 @@ import numpy as np
 from img2tri.arrays import Floats, Ints
 from img2tri.errors import MeshError
 from img2tri.types import Frame
-from img2tri.views.formats.readers.found import Found
+from img2tri.views.formats.readers.file_contents import Found
 from img2tri.views.formats.readers.read_any import read_file
 
 PLANE_KINDS = ("triangle", "triangle6")

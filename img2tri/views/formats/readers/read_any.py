@@ -1,4 +1,4 @@
-"""Any file img2tri writes, read back with all it holds: a path -> `img2tri.views.formats.readers.found.Found`, whatever the format.
+"""Any file img2tri writes, read back with all it holds: a path -> `img2tri.views.formats.readers.file_contents.Found`, whatever the format.
 
 Plane meshes and solids, triangles, wedges and tetrahedra; regions, their names, named sets, values of cells and points, and what img2tri
 wrote about the mesh, as far as the format holds them. `img2tri.views.formats.save_load.load` wants a plane mesh only.
@@ -14,7 +14,7 @@ import numpy as np
 
 from img2tri.errors import FileError, MeshError
 from img2tri.views.formats.atomic_write import known_suffix
-from img2tri.views.formats.readers.found import Found
+from img2tri.views.formats.readers.file_contents import Found
 from img2tri.views.formats.readers.read_inp import parse_inp
 from img2tri.views.formats.readers.read_medit import parse_medit
 from img2tri.views.formats.readers.read_msh_bdf import parse_bdf, parse_msh

@@ -14,7 +14,7 @@ import numpy as np
 
 from img2tri.arrays import Ints
 from img2tri.errors import MeshError
-from img2tri.views.formats.readers.found import Found, commented, unescaped
+from img2tri.views.formats.readers.file_contents import Found, commented, unescaped
 from img2tri.views.objects.solver_cells import CELL_SIDES, FLAT_KINDS, SOLID_KINDS
 
 # Families of elements of Abaqus; behind their letters stands the number of nodes, then at most letters for variants.

@@ -8,7 +8,7 @@ import numpy as np
 
 from img2tri.arrays import Ints
 from img2tri.errors import MeshError
-from img2tri.views.formats.readers.found import Found, commented, labels_of, unescaped
+from img2tri.views.formats.readers.file_contents import Found, commented, labels_of, unescaped
 from img2tri.views.objects.sets.named_sets import pieces_by_name
 
 _SIZES = {"Vertices": 0, "Edges": 2, "Triangles": 3, "Tetrahedra": 4}

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from img2tri.arrays import Floats, Ints
 from img2tri.errors import MeshError
-from img2tri.views.formats.readers.found import Found, commented, labels_of, unescaped
+from img2tri.views.formats.readers.file_contents import Found, commented, labels_of, unescaped
 from img2tri.views.formats.solvers import bdf, msh
 
 # Number of nodes of each of Gmsh's types of element.

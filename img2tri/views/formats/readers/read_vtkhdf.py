@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from img2tri.errors import MeshError
-from img2tri.views.formats.readers.found import Found, parts_of_fields
+from img2tri.views.formats.readers.file_contents import Found, parts_of_fields
 from img2tri.views.formats.vtp_vtu import VTK_TYPES
 
 

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from img2tri.errors import MeshError
-from img2tri.views.formats.readers.found import Found, parts_of_fields
+from img2tri.views.formats.readers.file_contents import Found, parts_of_fields
 from img2tri.views.formats.vtp_vtu import VTK_TYPES
 from img2tri.views.objects.solver_cells import CELL_SIDES
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from img2tri.arrays import Ints
 from img2tri.errors import MeshError
-from img2tri.views.formats.readers.found import Found, labels_of
+from img2tri.views.formats.readers.file_contents import Found, labels_of
 from img2tri.views.formats.solvers import xdmf
 
 _KINDS = {topology: kind for kind, topology in xdmf.TOPOLOGIES.items()}

@@ -26,7 +26,7 @@ import numpy as np
 from img2tri.arrays import Bools, Floats, Ints
 from img2tri.errors import ParameterError
 from img2tri.views.objects.body_per_region import unique_names
-from img2tri.views.objects.sets.grouping import grouped
+from img2tri.views.objects.sets.index_by_value import grouped
 from img2tri.views.objects.sets.set_numbers import FRAME, OUTER, file_numbers, set_tags
 from img2tri.views.objects.sets.set_pieces import connected_pieces, outer_pieces
 from img2tri.views.objects.side_twins import next_side, side_twins

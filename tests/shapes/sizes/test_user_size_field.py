@@ -10,7 +10,7 @@ from scipy.spatial.distance import cdist
 
 from img2tri import mesh_image
 from img2tri.errors import ParameterError
-from img2tri.shapes.sizes.size_field import FIRST_CELLS, LENGTH_STEP, MOST_FIELD_CELLS, size_field
+from img2tri.shapes.sizes.user_size_field import FIRST_CELLS, LENGTH_STEP, MOST_FIELD_CELLS, size_field
 from img2tri.types import Frame
 
 LABELS = np.zeros((30, 40), int)

@@ -10,7 +10,7 @@ import pytest
 
 from img2tri import mesh_image
 from img2tri.errors import ImageError
-from img2tri.raster.labels.label_map_check import flat_values
+from img2tri.raster.labels.label_map_detection import flat_values
 from img2tri.raster.reading import read
 
 DATA = Path(__file__).parents[3] / "data"
