@@ -86,7 +86,9 @@ def test_no_value_of_an_option_is_met_with_anything_but_its_name_or_a_mesh():
     for option in OPTIONS:
         assert outcomes[option, "object"].kind == "refused", option
         assert outcomes[option, "b'8'"].kind == "refused", option
-        assert outcomes[option, "np.array([1, 2])"].kind == "refused" or option in ("spacing", "origin", "threshold", "colors", "absorb"), option
+        assert outcomes[option, "np.array([1, 2])"].kind == "refused" or option in ("spacing", "origin", "threshold", "colors", "absorb"), (
+            option
+        )
 
 
 @pytest.mark.slow
