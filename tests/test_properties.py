@@ -37,8 +37,9 @@ def check_promises(mesh, labels, *, background, tolerance, min_angle, connectivi
         oracles.check_faithful(v, t, r, labels, background=background, tolerance=max(tolerance, SURE))
     report = mesh.report
     # Below half a pixel a narrow place may need more than the tolerance; then the report says so.
+    # And regions so small and ragged may have no way to their area: the report says that too.
     too_far = [line for line in report.warnings if tolerance < SURE and "apart at" in line]
-    assert report.warnings == too_far
+    assert [line for line in report.warnings if ": area " not in line] == too_far
     assert report.hausdorff <= (SURE if too_far else tolerance) * (1 + 1e-9)
     assert report.smallest_angle == pytest.approx(oracles.angles(v, t).min(), abs=1e-6)
     for label in meshed:
@@ -118,7 +119,8 @@ def gray_promises(case, options):
     oracles.check_valid(mesh.vertices, mesh.triangles)
     assert oracles.angles(mesh.vertices, mesh.triangles).min() >= options["min_angle"] - 1e-6
     assert oracles.mesh_topology(mesh.triangles) == oracles.pixel_topology(image > threshold, options["connectivity"])
-    assert all(options["tolerance"] < SURE and "apart at" in line for line in mesh.report.warnings), mesh.report.warnings
+    excused = [line for line in mesh.report.warnings if ": area " in line or (options["tolerance"] < SURE and "apart at" in line)]
+    assert mesh.report.warnings == excused
     h, w = image.shape
     y, x = np.mgrid[:h, :w] + 0.5
     assert (shapely.contains_xy(mesh.outlines()[1], x, h - y) == (image > threshold)).all()
@@ -217,7 +219,8 @@ GRAY = np.array([[1, -25, 38, 55, 70], [19, 67, -8, -21, 16], [-18, 18, 49, -23,
 )
 def test_areas_are_not_kept_at_the_expense_of_the_tolerance(image, options):
     assert mesh_image(image, **options, keep_area=False).report.kept
-    assert mesh_image(image, **options).report.kept
+    # The area yields, and the certificate says so; all else is kept.
+    assert all(": area " in line for line in mesh_image(image, **options).report.warnings)
 
 
 @pytest.mark.xfail(strict=True, reason="where pixels are flat, a junction can be sharper than the least angle")

@@ -79,7 +79,7 @@ def mesh_images(
     >>> for name, mesh in mesh_images(stack, spacing=(1, 1, 2.5), edge_length=4, workers=1):
     ...     print(name, mesh if isinstance(mesh, Exception) else mesh.frame.z)
     0 0.0
-    1 image: expected pixels to mesh, found none, only background; see background=
+    1 image: expected pixels to mesh, found none above the threshold 0.5 (mask); try another threshold=, or invert=True
     2 5.0
     """
     step, spacing = _step(options.get("spacing"))

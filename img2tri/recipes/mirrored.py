@@ -15,6 +15,7 @@ from img2tri.shapes.sizes.user_size_field import SizeField
 from img2tri.shapes.trace.dual_edges import DualEdges
 from img2tri.types import Frame, Outlines, RecipeMesh
 
+ROUNDING = 1e-5  # px: by so much the outlines of a symmetric image may differ from their mirror image
 ON_AXIS = 1e-9  # px: vertices nearer to an axis are on it
 SAME_LENGTH = 0.05  # relative: what lengths of a field may differ by from those on the other side
 
@@ -48,7 +49,8 @@ def conform_symmetric(
     half, half_edges, axes = half_outlines(
         symmetric, outlines, dual_edges, zones.labels, frame, background=zones.background, connectivity=connectivity
     )
-    made = conform(half, half_edges, sizes, **fill)
+    # Outlines of the other half are the mirror image of these up to rounding, which must not cost the tolerance.
+    made = conform(half, half_edges, sizes, **(fill | {"tolerance": max(fill["tolerance"] - ROUNDING, fill["tolerance"] / 2)}))
     mesh = made.vertices, made.triangles, made.regions
     for i, axis in enumerate(axes):
         if "xy"[i] in symmetric:

@@ -161,8 +161,9 @@ def test_every_kind_of_source_gives_the_same_mesh(tmp_path):
     import dask.array
     import h5py
     import tifffile
-    import xarray
     import zarr
+
+    xarray = pytest.importorskip("xarray")
 
     mask = blobs(140, 16.0).astype(np.uint8)
     np.save(tmp_path / "mask.npy", mask)

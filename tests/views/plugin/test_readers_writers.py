@@ -107,8 +107,8 @@ grid.save("deck.inp", deck=True, plane="strain")
 print(*sorted(r.extension + "!" * r.override for r in pv.registered_readers()), *sorted(w.extension for w in pv.registered_writers()))
 """
     found = installed(code, tmp_path).split()
-    assert {".bdf", ".msh", ".inp!", ".xdmf!"} <= set(found[:-4])
-    assert set(found[-4:]) == {".bdf", ".inp", ".msh", ".xdmf"}
+    assert {".bdf", ".msh", ".inp!", ".xdmf!"} <= set(found[:-5])
+    assert set(found[-5:]) == {".bdf", ".inp", ".mesh", ".msh", ".xdmf"}
     assert b"2.2 0 8" in (tmp_path / "old.msh").read_bytes()
     assert b"TYPE=CPE3" in (tmp_path / "deck.inp").read_bytes()
     assert b"*NSET, NSET=region_minus1__bone" in (tmp_path / "b.inp").read_bytes()
