@@ -82,7 +82,9 @@ def parse_inp(data: bytes) -> Found:
     facets = {called.get(name, name): part for name, part in facets.items() if not name.startswith("PERIODIC_")}
     texts = {name: text for name, text in said.items() if not text.startswith("named ")}
     # Nodes that stand for the stretch of a periodic mesh, after all others, are no part of the mesh.
-    return Found(nodes[: 1 + int(cells.max()), 1:], cells, kind, regions, names, facets, texts=texts)
+    points = nodes[: 1 + int(cells.max()), 1:]
+    points[:, 2] += float(texts.pop("z", 0))  # plane elements are written at 0
+    return Found(points, cells, kind, regions, names, facets, texts=texts)
 
 
 def _keyword_blocks(text: str) -> Iterator[tuple[str, dict[str, str], list[str]]]:

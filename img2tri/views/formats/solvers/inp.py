@@ -3,8 +3,9 @@
 Each region is an ELSET; each set of facets an NSET of its nodes and a SURFACE of its element sides, an interface that of the region that
 comes first in its name. The file holds the mesh and nothing else, to be included in an analysis by ``*INCLUDE, INPUT=mesh.inp``, or in a
 ``*PART``. Names are made to fit, see `img2tri.views.formats.solvers.plain_text`; comments tell where one had to be changed, and the label
-of each region. Lines and numbers keep to the limits of Abaqus, 20 characters for a number. CalculiX takes plane elements at z = 0 only, so
-an analysis has them there; the mesh alone keeps the height it has.
+of each region. Lines and numbers keep to the limits of Abaqus, 20 characters for a number. Plane elements lie at z = 0, as CalculiX takes
+no others and Abaqus looks at x and y alone; the height of a mesh that lies elsewhere is in a comment behind the nodes, and put back by
+`img2tri.load` and ``pyvista.read``.
 
 Meshes that are periodic have an ``*EQUATION`` for each node that repeats another: its displacements are those of the other and those of the
 node PERIODIC_X, or PERIODIC_Y, which stand for the stretch of the whole; where both sides meet, of both.
@@ -68,12 +69,13 @@ def inp(made: Cells, *, deck: bool = False, plane: str = "stress") -> dict[str, 
     kind = _SOLID_ELEMENTS[made.kind] if made.solid else f"{letters}{_IN_PLANE[made.kind]}"
     named = set_identifiers(made, taken=(*_OWN, *_REFERENCE.values()))
     pairs = node_pairs(made)
-    flat = deck and not made.solid
+    z = 0.0 if made.solid else float(made.points[0, 2])
     lines = ["*HEADING", "img2tri"] if deck else []
     lines += [f"** {MARK}", *comment_lines(made.texts, "** ")]
     lines += comment_lines({"labels": json.dumps({named[name]: label for label, name in made.names.items()})}, "** ")
     lines += comment_lines({plain: f"named {name}" for name, plain in named.items() if plain != name}, "** ")
-    parts = ["\n".join([*lines, "*NODE\n"]), _nodes(made.points * (1, 1, 0) + 0.0 if flat else made.points)]
+    parts = ["\n".join([*lines, "*NODE\n"]), _nodes(made.points if made.solid else made.points * (1, 1, 0) + 0.0)]
+    parts += [f"{line}\n" for line in comment_lines({"z": repr(z)} if z else {}, "** ")]
     for label, mine in made.members().items():
         parts.append(f"*ELEMENT, TYPE={kind}, ELSET={named[made.names[label]]}\n")
         parts.append(whole_rows(np.column_stack([mine + 1, made.cells[mine] + 1]), ", "))

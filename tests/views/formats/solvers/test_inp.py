@@ -13,6 +13,7 @@ from views.plates import cells
 from views.solver_meshes import BOUNDS, HEIGHT, KINDS, TEXTS, made, plate, program, sizes
 
 from img2tri import MeshError, ParameterError
+from img2tri.views.formats.readers.read_inp import parse_inp
 from img2tri.views.formats.solvers.inp import inp
 from img2tri.views.objects.solver_cells import flat_cells
 
@@ -52,7 +53,9 @@ def test_the_mesh_alone_has_nodes_elements_sets_and_surfaces_and_nothing_else(ki
     names = [PLAIN.get(name, name) for name in mesh.sides]
     elements = {f"*ELEMENT, TYPE={ELEMENTS[kind]}, ELSET={name}": label for name, label in (("region_minus1", -1), ("bone", 4))}
     assert set(found) == {"*NODE", *elements, *(f"*NSET, NSET={n}" for n in names), *(f"*SURFACE, NAME={n}, TYPE=ELEMENT" for n in names)}
-    assert np.array([[float(x) for x in row[1:]] for row in found["*NODE"]]) == pytest.approx(mesh.points, rel=1e-12, abs=0)
+    assert np.array([[float(x) for x in row[1:]] for row in found["*NODE"]]) == pytest.approx(
+        mesh.points if mesh.solid else mesh.points * (1, 1, 0), rel=1e-12, abs=0
+    )
     for key, label in elements.items():
         rows = np.array(found[key], int)
         assert np.array_equal(rows[:, 0] - 1, np.flatnonzero(mesh.regions == label))
@@ -214,12 +217,17 @@ def test_numbers_have_all_the_digits_there_is_room_for():
     assert rows[:, :2] == pytest.approx(vertices * 1e-7 / 3 - 1e-7, rel=1e-12, abs=0)
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_the_mesh_keeps_its_height_and_an_analysis_lies_at_zero(kind):
-    flat = kind.startswith("triangle")
-    assert ({row[3] for row in cards(inp(made(kind))[""])["*NODE"]} == {"0.5"}) == flat
-    nodes = inp(made("triangle"), deck=True)[""].decode().partition("*NODE\n")[2].partition("*")[0].splitlines()
-    assert {row.split(", ")[3] for row in nodes} == {"0.0"}  # CalculiX takes no others
+@pytest.mark.parametrize("deck", [False, True])
+@pytest.mark.parametrize("kind", KINDS[:4])
+def test_plane_elements_lie_at_zero_and_their_height_is_put_back(kind, deck):
+    """CalculiX takes no others, and whoever reads the file here finds the mesh where it was."""
+    mesh = made(kind)
+    data = inp(mesh, deck=deck)[""]
+    nodes = data.decode().partition("*NODE\n")[2].partition("*")[0].splitlines()
+    assert ({row.split(", ")[3] for row in nodes} == {"0.0"}) == (not mesh.solid)
+    read = parse_inp(data)
+    assert read.points == pytest.approx(mesh.points, rel=1e-12, abs=0)
+    assert "z" not in read.texts
 
 
 def test_texts_are_comments():
