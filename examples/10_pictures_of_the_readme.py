@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 import img2tri
-from img2tri.views.figures.colours import palette
+from img2tri.views.figures.region_colours import palette
 
 DATA = Path(__file__).resolve().parent.parent / "data"
 DPI, COLOURS = 144, 128  # few colours make small files

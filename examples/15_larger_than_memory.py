@@ -16,7 +16,7 @@ import zarr
 from distributed import Client, LocalCluster
 
 from img2tri import mesh_tiles
-from img2tri.tiles.outputs import load_tiles
+from img2tri.tiles.save_parts import load_tiles
 
 
 def main(out: Path) -> dict[str, float]:

@@ -68,13 +68,13 @@ if TYPE_CHECKING:
     from img2tri.mesh import TriangleMesh
     from img2tri.mesh import load_mesh as load
     from img2tri.pipeline import mesh_image
-    from img2tri.tiles.tiling import mesh_tiles
+    from img2tri.tiles.mesh_tiles import mesh_tiles
 
 __version__ = "0.1.0"
 
 _PLACES = {
     "mesh_image": "pipeline",
-    "mesh_tiles": "tiles.tiling",
+    "mesh_tiles": "tiles.mesh_tiles",
     "explore": "app.explore",
     "mesh_images": "many.mesh_images",
     "load": "mesh:load_mesh",

@@ -8,10 +8,11 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from img2tri.arrays import Floats, Ints
 from img2tri.errors import MeshError, choice
 from img2tri.mesh_exports import MeshExports
 from img2tri.triangles.tools.mesh_checks import check_mesh, check_regions
-from img2tri.types import Floats, Frame, Ints, Provenance
+from img2tri.types import Frame, Provenance
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -96,7 +97,7 @@ class TriangleMesh(MeshExports):
         import numpy as np
 
         from img2tri.arrays import unique_edges
-        from img2tri.shapes.periodic.vertex_pairs import vertex_pairs
+        from img2tri.shapes.periodic.paired_vertices import vertex_pairs
 
         settings = self.origin.settings if self.origin else {}
         edges, sides = unique_edges(self.triangles)

@@ -216,9 +216,9 @@ class MeshExports:
         quality: bool = True,
     ) -> Cells:
         """Return the elements solvers compute on, with their named sets."""
+        from img2tri.views.objects.extruded_wedges import wedges
         from img2tri.views.objects.solver_cells import flat_cells, solid_cells
         from img2tri.views.objects.tetrahedra import tetrahedra
-        from img2tri.views.objects.wedges import wedges
 
         nodes, elements, n, middles = self.vertices, self.triangles, len(self.vertices), None
         if _order(order) == 2:

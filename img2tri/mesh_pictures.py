@@ -9,7 +9,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from img2tri.options import spelling
+from img2tri.options import reproducing
 from img2tri.raster.reading import read
 from img2tri.triangles.tools.quality_summary import measure
 from img2tri.views.formats.atomic_write import store, writable
@@ -51,7 +51,7 @@ def page_about(mesh: Any, values: Any, *, title: str | None = None, command: str
 def _again(source: str | None, options: dict[str, Any]) -> str:
     """Say how the mesh is made again: by a command if its image was a file, else in Python."""
     array = source in (None, "array")
-    return spelling.python("image", options, literal=False) if array else spelling.command(str(source), options)
+    return reproducing.python("image", options, literal=False) if array else reproducing.command(str(source), options)
 
 
 def meshed_part(mesh: Any, image: Any) -> Any:

@@ -13,14 +13,15 @@ from typing import Any, Unpack
 from img2tri.errors import ImageError, ParameterError, shown
 from img2tri.mesh import TriangleMesh
 from img2tri.options.all_options import MeshOptions, checked, of, plain
-from img2tri.options.describing import with_options
 from img2tri.options.image_options import ReadOptions, SegmentOptions
 from img2tri.options.mesh_options import FillOptions, OutlineOptions, SizeOptions
 from img2tri.options.paper_options import PaperOptions
+from img2tri.options.signature_docs import with_options
+from img2tri.paper.defaults import GRID_STEP, PAPER_SMOOTHING, PAPER_THRESHOLD
 from img2tri.raster.in_memory.image_hash import image_hash
 from img2tri.raster.labels.cropping import crop
 from img2tri.raster.labels.early_warnings import early_warnings
-from img2tri.raster.labels.label_maps import label_colours
+from img2tri.raster.labels.label_numbers import label_colours
 from img2tri.raster.labels.otsu_threshold import Level
 from img2tri.raster.labels.segmentation import Segmentation, segment, without_specks
 from img2tri.raster.metadata.wanted_width import as_wide_as
@@ -33,9 +34,6 @@ from img2tri.shapes.periodic.side_chains import check_periodic
 from img2tri.shapes.polygons import enclosed_areas
 from img2tri.shapes.trace.dual_edges import pixel_areas, pixels_beside
 from img2tri.types import Frame, Outlines, Picture, Provenance, RecipeMesh
-
-PAPER_THRESHOLD, PAPER_STEP = 240, "10px"
-PAPER_SMOOTHING = {"structured": "none", "unstructured": "uniform"}
 
 
 @with_options
@@ -176,7 +174,7 @@ def _paper(zones: Segmentation, picture: Picture, sizes: Sizes, o: MeshOptions) 
 
     paper = of(PaperOptions, o)
     if o["recipe"] == "structured" and o["edge_length"] is None and paper["step"] is None:
-        paper["step"] = PAPER_STEP
+        paper["step"] = f"{GRID_STEP}px"
     passes = o["iterations"] if (o["smoothing"] or PAPER_SMOOTHING[o["recipe"]]) == "uniform" else 0
     return paper_mesh(
         zones.labels, picture.frame, recipe=o["recipe"], background=zones.background, edge_length=sizes.longest, iterations=passes,

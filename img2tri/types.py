@@ -14,10 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from img2tri.arrays import Bools as Bools  # their home is arrays
-from img2tri.arrays import ChainIndex
-from img2tri.arrays import Floats as Floats
-from img2tri.arrays import Ints as Ints
+from img2tri.arrays import ChainIndex, Floats, Ints
 from img2tri.errors import ParameterError, finite, shown
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from img2tri.raster.labels.colours_to_gray import to_gray
-from img2tri.raster.labels.label_maps import distinct, label_map
+from img2tri.raster.labels.label_numbers import distinct, label_map
 from img2tri.raster.labels.otsu_threshold import binarize
 from img2tri.raster.reading import read
 

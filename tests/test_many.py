@@ -21,9 +21,9 @@ from PIL import Image
 
 from img2tri import mesh_image
 from img2tri.cli import main, printing
-from img2tri.cli import workers as pool
+from img2tri.cli import run_jobs as pool
 from img2tri.cli.job import Job
-from img2tri.many.workers import local_workers
+from img2tri.many.local_workers import local_workers
 
 IMAGES = [specimens.disc(30 + k, 10.0 + k / 2).astype(bool) for k in range(4)]
 CASES = [(image, {"recipe": "conforming"}) for image in IMAGES] + [(image, {"recipe": "unstructured", "threshold": 0}) for image in IMAGES]

@@ -20,7 +20,7 @@ from img2tri.app.knobs import knobs, values
 from img2tri.certificate.report import certify
 from img2tri.errors import Img2triError, Img2triWarning, MeshError, ParameterError
 from img2tri.mesh import TriangleMesh
-from img2tri.options import spelling
+from img2tri.options import reproducing
 from img2tri.pipeline import mesh_image
 from img2tri.raster.files.byte_sources import source_of
 from img2tri.raster.reading import read
@@ -94,7 +94,7 @@ class Session:
         if self._picture is None:
             return pack(head, {})
         facts = image_facts.describe(self._picture, self.name, str(self.base.get("units") or ""))
-        plain = {option: value for option, value in self.base.items() if not spelling.is_field(value)}
+        plain = {option: value for option, value in self.base.items() if not reproducing.is_field(value)}
         picture = png(thinned(self._picture.values, _SHOWN))
         return pack(head | {"image": facts.head, "base": plain}, {**facts.codes, "picture": image_facts.as_bytes(picture)})
 
@@ -130,7 +130,7 @@ class Session:
                 warnings.simplefilter("ignore", Img2triWarning)  # the page shows the notes, which have them
                 mesh = mesh_image(picture, progress=lambda *_: self._still_wanted(number), **rest)
             if window is None:
-                self.mesh, self.options = mesh, spelling.different(options)
+                self.mesh, self.options = mesh, reproducing.different(options)
         metrics: dict[str, Any] = measure(mesh.vertices, mesh.triangles, ["q", "min_angle"])
         facts: dict[str, Any] = {} if mesh.origin is None else {"settings": mesh.origin.settings}
         head: dict[str, Any] = {
@@ -141,8 +141,8 @@ class Session:
             "threshold": facts.get("settings", {}).get("threshold"),
             "edge_length": facts.get("settings", {}).get("edge_length"),
             "removed": (mesh.origin.counted if mesh.origin else {}).get("removed"),
-            "python": spelling.python(self.name, options),
-            "command": spelling.command(self.name, options),
+            "python": reproducing.python(self.name, options),
+            "command": reproducing.command(self.name, options),
             "tiles": html_tables.tiles(
                 facts, len(mesh.vertices), len(mesh.triangles), len(set(mesh.regions.tolist())), metrics["q"], metrics["min_angle"]
             ),

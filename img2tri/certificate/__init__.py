@@ -5,5 +5,5 @@ outline_distance      Hausdorff distance between outlines and mesh; pixels that 
 region_areas          Areas of regions, in the mesh and in the image; regions that lie elsewhere.
 topology_and_defects  Components, holes, neighbours; inverted or flat triangles, edges of three, vertices where a region touches itself.
 edge_sides            Each edge once, and what lies on its sides.
-small_angles          The smallest angles, measured where they may matter.
+min_angle_check       Which triangles have angles below the promised one, and how small the smallest is.
 """

@@ -16,12 +16,13 @@ from typing import Any
 
 import numpy as np
 
+from img2tri.arrays import Floats, Ints
 from img2tri.certificate.edge_sides import EdgeSides
+from img2tri.certificate.min_angle_check import small_angles
 from img2tri.certificate.outline_distance import SegmentSet, hausdorff, wrong_pixels
 from img2tri.certificate.region_areas import AREA_TOLERANCE, displaced, moments, region_areas, region_numbers, regions_off
-from img2tri.certificate.small_angles import small_angles
 from img2tri.certificate.topology_and_defects import DEFECTS, defects, neighbours, topology
-from img2tri.types import Floats, Frame, Ints, Provenance
+from img2tri.types import Frame, Provenance
 
 PLACES = 20  # listed at most
 

@@ -5,7 +5,7 @@
                                          save_arguments     options of saving, and which formats take them
     arguments           -> jobs          file_names         an image, those of a folder or pattern too, and the files to be made of it
     a job               -> an outcome    meshing_job        by mesh_image, as any user of the library would
-    jobs                -> outcomes      workers            one after the other, or by several processes, which are started here
+    jobs                -> outcomes      run_jobs           one after the other, or by the workers of `img2tri.many`
     outcomes            -> words         printing           the one place that prints
                                          summary_table      a row for each image, and which are whole already
                                          wording            messages in the words of the command line

@@ -11,7 +11,7 @@ from typing import Any
 
 from img2tri.cli.printing import tell
 from img2tri.errors import FileError, ParameterError
-from img2tri.options.typed import whole_number
+from img2tri.options.parsing import whole_number
 
 ABOUT = """Open a page in the browser: choose an image, turn the knobs, and watch the mesh.
 

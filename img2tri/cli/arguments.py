@@ -16,7 +16,7 @@ from img2tri.cli.commands.tiles_command import add_tiles
 from img2tri.cli.option_arguments import add_mesh_options
 from img2tri.cli.save_arguments import add_save_options
 from img2tri.options.all_options import nearest
-from img2tri.options.typed import whole_number
+from img2tri.options.parsing import whole_number
 
 COMMANDS = ("mesh", "tiles", "view-report", "quality", "app")
 LABEL = r"(-?\d+|0x[\da-fA-F]+|#[\da-fA-F]{6})"

@@ -23,9 +23,9 @@ from img2tri.cli.file_names import folders, images_typed, jobs_of, mesh_options,
 from img2tri.cli.job import Job
 from img2tri.cli.meshing_job import about_file, problem, view
 from img2tri.cli.printing import Bar, complain, flush, tell, tell_failures, tell_outcome
+from img2tri.cli.run_jobs import run, workers_of
 from img2tri.cli.stdin_stdout import DASH, abandon_stdout, check_stdin, check_stdout, to_stdout
 from img2tri.cli.summary_table import check_summary, is_whole, rows_of, summary_table
-from img2tri.cli.workers import run, workers_of
 from img2tri.errors import Img2triError
 
 DONE, BAD, INTERRUPTED = 0, 2, 130

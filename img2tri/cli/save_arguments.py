@@ -9,7 +9,7 @@ from typing import Any
 
 from img2tri.errors import ParameterError, finite, integer
 from img2tri.options.option import every
-from img2tri.options.typed import number, whole_number
+from img2tri.options.parsing import number, whole_number
 
 SOLVERS = (".msh", ".inp", ".bdf", ".xdmf", ".mesh", ".vtu", ".vtkhdf")
 

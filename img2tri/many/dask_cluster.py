@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from img2tri.errors import FileError, ParameterError
-from img2tri.many.workers import AHEAD, MOST_IN_A_BATCH, WorkerLostError
+from img2tri.many.local_workers import AHEAD, MOST_IN_A_BATCH, WorkerLostError
 
 if TYPE_CHECKING:
     from distributed import Client

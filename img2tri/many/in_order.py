@@ -11,7 +11,7 @@ from collections.abc import Callable, Generator, Iterable
 from itertools import islice
 from typing import Any, TypeVar
 
-from img2tri.many.workers import WorkerLostError, Workers
+from img2tri.many.local_workers import WorkerLostError, Workers
 
 Thing = TypeVar("Thing")
 Answer = TypeVar("Answer")

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any, Unpack, cast
 
 from img2tri.errors import Img2triError, MeshError, ParameterError, finite
 from img2tri.many.dask_cluster import Cluster
+from img2tri.many.image_sources import OneImage, each_image
 from img2tri.many.in_order import in_order
-from img2tri.many.sources import OneImage, each_image
-from img2tri.many.workers import Workers, local_workers
+from img2tri.many.local_workers import Workers, local_workers
 from img2tri.mesh import TriangleMesh
 from img2tri.options.all_options import MeshOptions, checked
-from img2tri.options.describing import with_options
+from img2tri.options.signature_docs import with_options
 from img2tri.pipeline import mesh_image
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from typing import Annotated, TypedDict
 
 from img2tri.options import option as o
-from img2tri.options import typed
+from img2tri.options import parsing
 from img2tri.options.option import Option
 
 UNITS = ("um", "mm", "cm", "m", "in", "ft")
@@ -24,7 +24,7 @@ class ReadOptions(TypedDict, total=False):
             None,
             'Size of a pixel in world units: a number, a pair (dx, dy), or "file", what the file says, in its unit.',
             none="1, or what a DICOM, NIfTI, NRRD or MetaImage file says",
-            typed=typed.pair_or_word,
+            typed=parsing.pair_or_word,
             sign="S",
         ),
     ]
@@ -34,7 +34,7 @@ class ReadOptions(TypedDict, total=False):
             "lower",
             '"lower": (0, 0) is the lower-left corner of the image, y points up; "upper": the upper-left corner, y points down; '
             "(x, y): the place of the lower-left corner, in world units.",
-            typed=typed.pair_or_word,
+            typed=parsing.pair_or_word,
             sign="O",
         ),
     ]
@@ -44,7 +44,7 @@ class ReadOptions(TypedDict, total=False):
             0,
             "Which image of a file with several, from 0: a page, a frame, a slice of a volume.",
             check=o.whole(),
-            typed=typed.whole_number,
+            typed=parsing.whole_number,
             sign="N",
         ),
     ]
@@ -54,7 +54,7 @@ class ReadOptions(TypedDict, total=False):
             2**28,
             "The most pixels a file may have; larger ones are refused before they fill the memory.",
             check=o.whole(least=1, most=2**63 - 1),
-            typed=typed.whole_number,
+            typed=parsing.whole_number,
             sign="N",
         ),
     ]
@@ -70,7 +70,7 @@ class WidthOptions(TypedDict, total=False):
             "Width of the whole image in world units; the size of a pixel follows. In place of `spacing`.",
             none="as `spacing` says",
             check=o.real(above=0),
-            typed=typed.number,
+            typed=parsing.number,
             sign="W",
         ),
     ]
@@ -85,7 +85,7 @@ class PartOptions(TypedDict, total=False):
             None,
             "Mesh only this part of the image, where it lies: (left, bottom, right, top) in world units.",
             none="all of it",
-            typed=typed.comma_separated,
+            typed=parsing.comma_separated,
             sign="L,B,R,T",
         ),
     ]
@@ -103,7 +103,7 @@ class SegmentOptions(TypedDict, total=False):
             "to the first, 1 up to the second, and so on.",
             none="the silhouette where pixels are transparent, the middle of two values, else Otsu's level; 240 in the paper's recipes",
             check=o.one_level_or_more,
-            typed=typed.numbers_or_word,
+            typed=parsing.numbers_or_word,
             sign="T",
         ),
     ]
@@ -114,7 +114,7 @@ class SegmentOptions(TypedDict, total=False):
             "True: every value of the image is a region of its own. A list of values: these are.",
             none="one white zone, region 1",
             check=o.all_or_some,
-            typed=typed.all_or_labels,
+            typed=parsing.all_or_labels,
             sign="[LIST]",
         ),
     ]
@@ -124,7 +124,7 @@ class SegmentOptions(TypedDict, total=False):
             0,
             "The label that is not meshed; None: all are meshed.",
             check=o.one_label,
-            typed=typed.label_or_none,
+            typed=parsing.label_or_none,
             sign="N",
         ),
     ]
@@ -138,7 +138,7 @@ class SegmentOptions(TypedDict, total=False):
             "'#rrggbb' or (r, g, b).",
             none="colours are not looked for",
             check=o.count_or_colours,
-            typed=typed.typed_colours,
+            typed=parsing.typed_colours,
             sign="N|LIST",
         ),
     ]
@@ -150,7 +150,7 @@ class SegmentOptions(TypedDict, total=False):
             "So regions parted by thin lines touch, and have interfaces. The image is a label map then, as with `labels`.",
             none="every label keeps its pixels",
             check=o.one_label_or_more,
-            typed=typed.whole_numbers,
+            typed=parsing.whole_numbers,
             sign="LIST",
         ),
     ]
@@ -178,7 +178,7 @@ class SpeckOptions(TypedDict, total=False):
             "Fill holes, and drop nothing: True fills all, an area, in world units squared or in pixels as 20px2, those smaller than it.",
             none="holes stay, but for those smaller than `min_area`",
             check=o.yes_or_area,
-            typed=typed.yes_or_text,
+            typed=parsing.yes_or_text,
             sign="[A]",
         ),
     ]
@@ -189,7 +189,7 @@ class SpeckOptions(TypedDict, total=False):
             4,
             "Pixels hang together through their sides (4), or also through their corners (8).",
             check=o.four_or_eight,
-            typed=typed.whole_number,
+            typed=parsing.whole_number,
             sign="4|8",
         ),
     ]
@@ -205,7 +205,7 @@ class NameOptions(TypedDict, total=False):
             "Names of regions by label, as in 1=bone.",
             none="those of a segmentation of 3D Slicer, else regions have their labels",
             check=o.names_by_label,
-            typed=typed.label_and_value,
+            typed=parsing.label_and_value,
             sign="N=NAME",
             flag="--name",
         ),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Annotated, TypedDict
 
 from img2tri.options import option as o
-from img2tri.options import typed
+from img2tri.options import parsing
 from img2tri.options.option import Option
 
 if TYPE_CHECKING:
@@ -94,7 +94,7 @@ class SizeOptions(TypedDict, total=False):
             "lengths, one for each pixel; a function of places (k, 2) that returns lengths (k,).",
             none="some 2000 triangles fill the image, at least 4 px",
             check=o.edge_lengths,
-            typed=typed.length_by_label,
+            typed=parsing.length_by_label,
             sign="L",
             kind="float | str | dict | array | callable | None",
         ),
@@ -105,7 +105,7 @@ class SizeOptions(TypedDict, total=False):
             0.17,
             "By how much the length may grow per unit of distance; smaller gives better triangles, and more.",
             check=o.real(least=0.001, most=100),
-            typed=typed.number,
+            typed=parsing.number,
             sign="G",
         ),
     ]
@@ -130,7 +130,7 @@ class SizeOptions(TypedDict, total=False):
             "At least so many edges across the thinnest places; 2 or 3 for bending.",
             none="not looked after",
             check=o.real(above=0),
-            typed=typed.number,
+            typed=parsing.number,
             sign="N",
         ),
     ]
@@ -141,7 +141,7 @@ class SizeOptions(TypedDict, total=False):
             "At least so many edges to a full turn of an outline, so that small holes stay round.",
             none="as the tolerance needs",
             check=o.real(least=3),
-            typed=typed.number,
+            typed=parsing.number,
             sign="N",
         ),
     ]
@@ -170,7 +170,7 @@ class FillOptions(TypedDict, total=False):
             30.0,
             "The least angle of a triangle, 0 to 32 degrees; above 30 more triangles are needed.",
             check=o.real(least=0, most=32),
-            typed=typed.number,
+            typed=parsing.number,
             sign="A",
         ),
     ]
@@ -198,7 +198,7 @@ class FillOptions(TypedDict, total=False):
             0,
             "Of all that is random: scattered points. The same seed gives the same mesh.",
             check=o.whole(most=2**64 - 1),
-            typed=typed.whole_number,
+            typed=parsing.whole_number,
             sign="N",
         ),
     ]
@@ -220,5 +220,5 @@ class SmoothOptions(TypedDict, total=False):
     ]
     iterations: Annotated[
         int,
-        Option(10, "Passes of smoothing.", check=o.whole(most=MOST_PASSES), typed=typed.whole_number, sign="N"),
+        Option(10, "Passes of smoothing.", check=o.whole(most=MOST_PASSES), typed=parsing.whole_number, sign="N"),
     ]

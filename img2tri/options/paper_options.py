@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, TypedDict
 
 from img2tri.options import option as o
-from img2tri.options import typed
+from img2tri.options import parsing
 from img2tri.options.option import Option
 
 
@@ -30,7 +30,7 @@ class PaperOptions(TypedDict, total=False):
             "Points on each contour.",
             none="as `edge_length` asks for",
             check=o.whole(),
-            typed=typed.whole_number,
+            typed=parsing.whole_number,
             sign="N",
             recipes=("unstructured",),
         ),
@@ -42,7 +42,7 @@ class PaperOptions(TypedDict, total=False):
             "Points inside each contour.",
             none="as many as fit",
             check=o.whole(),
-            typed=typed.whole_number,
+            typed=parsing.whole_number,
             sign="N",
             recipes=("unstructured",),
         ),

@@ -23,5 +23,6 @@ III-C         `put_together`                `paper.recipes.unstructured_mesh`; w
 Three of them are not in this house, since the default recipe needs them too. What differs from the paper, and why, is in the README;
 `examples/02_paper_step_by_step.py` goes this way with pictures, and the tests hold each function against the listing as printed.
 
-The modules, in that order: grid, contours, boundary_points, poisson_disk, active_cells, delaunay, recipes.
+The modules, in that order: grid, contours, boundary_points, poisson_disk, active_cells, delaunay, recipes. The values the paper
+chooses (T = 240, a grid of 10 px) are in defaults.
 """

@@ -24,14 +24,13 @@ from img2tri.arrays import Bools, Floats, Ints
 from img2tri.errors import ImageError, MeshError, choice, finite, integer
 from img2tri.paper.boundary_points import arc_length_samples
 from img2tri.paper.contours import contour_polygon, external_contours
+from img2tri.paper.defaults import GRID_STEP
 from img2tri.paper.delaunay import centroid_filter, delaunay, without_unused
 from img2tri.paper.grid import MOST_POINTS, mask_filter, structured_grid
 from img2tri.paper.poisson_disk import DISTANCE_PER_EDGE, poisson_disk
 from img2tri.triangles.tools.laplacian_smoothing import uniform
 from img2tri.triangles.tools.topology import curve_vertices
 from img2tri.types import Frame, RecipeMesh
-
-GRID_STEP = 10  # px between the points of the paper's grid
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,7 +19,7 @@ from img2tri.arrays import Floats, Ints, Points, as_complex, as_rows
 from img2tri.errors import ParameterError
 from img2tri.raster.labels.segmentation import Segmentation
 from img2tri.recipes.preserved_areas import with_areas_preserved
-from img2tri.shapes.periodic.pairs import FILLINGS, PeriodicPairs, find_periodic_pairs
+from img2tri.shapes.periodic.paired_outlines import FILLINGS, PeriodicPairs, find_periodic_pairs
 from img2tri.shapes.periodic.side_chains import cut_alike
 from img2tri.shapes.place.placement import place_on_pixel_sides, place_outlines
 from img2tri.shapes.simplify.simplification import Simplification, space_evenly
@@ -215,8 +215,8 @@ def _filled(coarse: Simplification, pairs: PeriodicPairs, sizes: Sizes, demands:
     these are at fault: at the corners of triangles with too small an angle, or where no mesh could be made.
     """
     from img2tri.recipes.poisson_interior import scattered
-    from img2tri.triangles.angles import narrower
     from img2tri.triangles.generate.constrained_delaunay import PslgError
+    from img2tri.triangles.smallest_tangents import narrower
 
     chains = coarse.coarse()
     try:

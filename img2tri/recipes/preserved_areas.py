@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from img2tri.shapes.periodic.pairs import PeriodicPairs
+from img2tri.shapes.periodic.paired_outlines import PeriodicPairs
 from img2tri.shapes.simplify.area_preservation import area_errors, preserve_areas
 from img2tri.shapes.simplify.simplification import Simplification
 

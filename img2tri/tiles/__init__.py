@@ -1,18 +1,18 @@
 """One image larger than memory -> one mesh in parts: block by block, each fitted to its neighbours, edge by edge.
 
-    tiling      `mesh_tiles`, every step in order: the place to begin reading
-    sources     where pixels come from, read window by window
-    survey      the first pass: level, default edge length, a hash of all pixels -> a plan
-    plans       the grid of blocks, their order in four colours, their territories; what each is meshed by
-    blocks      the work of one task: a block and what is around it, and what its mesh adds to the pieces that are there
-    merging     a new mesh fitted to finished pieces: where both agree it goes on, else there is a gap to fill
-    attempts    which way of filling a gap is tried where
-    splices     where outlines go on through a gap
-    cavities    a gap triangulated, smoothed, refined
-    pieces      triangles of one block with their seam
-    storage     pieces on disk, whole or not there
-    numbering   the proof that all seams fit, and the numbers of vertices
-    outputs     zarr, .pvtu, .vtkhdf
+    mesh_tiles         `mesh_tiles`, every step in order: the place to begin reading
+    pixel_source       the file or array the pixels come from, read window by window
+    first_pass         what has to be known of the whole image: level, default edge length, a hash of all pixels -> the plan
+    block_plan         the grid of blocks, their order in four colours, their territories; what each is meshed by
+    mesh_block         the work of one task: a block is meshed with what is around it, and fitted to the pieces that are there
+    merge_pieces       that fit: where the new mesh and finished pieces agree it goes on, else there is a gap to fill
+    gap_attempts       the ways of filling a gap, from the gentlest on: how wide it is, how long edges are, what is given up
+    outline_splices    outlines joined across a gap
+    gap_triangulation  a gap triangulated, smoothed, refined
+    piece_seams        the triangles of one block, and its seam: the edges where other blocks go on
+    piece_files        pieces on disk, whole or not there, from which an interrupted run goes on
+    seam_matching      the proof that each seam edge has one partner, and from it the numbers of vertices in the whole mesh
+    save_parts         the mesh in files of parts: zarr, .pvtu, .vtkhdf; and read back
 
 Two neighbours see the same pixels around their common border, but not the same image, and their meshes differ. The first one stays. Of the
 other the triangles near its border give way, outlines are spliced, and the gap is filled between the two rims, which stay as they are to

@@ -1,7 +1,7 @@
 """TRIANGLES: points and segments -> triangles; and work on triangles.
 
-generate         Outlines -> triangles: the mesh is made here.
-tools            Any mesh: topology, quality, smoothing. Neither folder imports the other.
-angles           The smallest angle of each triangle, which both look at.
-connected_faces  Which triangles hang together.
+generate           Outlines -> triangles: the mesh is made here.
+tools              Any mesh: topology, quality, smoothing. Neither folder imports the other. Angles in degrees: tools/triangle_metrics.
+smallest_tangents  The smallest angle of each triangle by its tangent: cheap, for loops that only compare angles.
+connected_faces    Which triangles hang together.
 """

@@ -15,7 +15,7 @@ from img2tri.app.image_facts import describe
 from img2tri.app.session import OvertakenError, Session
 from img2tri.cli.arguments import parse
 from img2tri.errors import ImageError, MeshError, ParameterError
-from img2tri.options import spelling
+from img2tri.options import reproducing
 from img2tri.options.all_options import OPTIONS
 from img2tri.raster.reading import read
 
@@ -77,7 +77,7 @@ def test_what_a_knob_offers_is_taken(name, choices):
     ],
 )
 def test_the_command_and_the_python_say_the_same_options(given):
-    typed = parse(shlex.split(spelling.command("my file.png", given))[1:])
+    typed = parse(shlex.split(reproducing.command("my file.png", given))[1:])
     assert typed.images == ["my file.png"]
     found = {name: knobs._checked(name, value) for name, value in vars(typed).items() if name in OPTIONS}
     plain = {name: list(value) if isinstance(value, tuple) else value for name, value in found.items()}
@@ -86,7 +86,7 @@ def test_the_command_and_the_python_say_the_same_options(given):
         plain["edge_length"] = {label: knobs._checked("edge_length", length) for label, length in plain["edge_length"].items()}
     assert plain == wanted
     said = {}
-    exec(spelling.python("my file.png", given).replace("img2tri.mesh_image", "said"), {"said": lambda image, **options: options}, said)
+    exec(reproducing.python("my file.png", given).replace("img2tri.mesh_image", "said"), {"said": lambda image, **options: options}, said)
     assert said["mesh"] == wanted
 
 

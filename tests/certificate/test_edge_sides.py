@@ -8,8 +8,8 @@ import pytest
 from scipy.spatial import Delaunay
 
 from img2tri.certificate.edge_sides import EdgeSides
+from img2tri.certificate.min_angle_check import small_angles
 from img2tri.certificate.outline_distance import SegmentSet
-from img2tri.certificate.small_angles import small_angles
 
 
 def random_mesh(seed, n=200):

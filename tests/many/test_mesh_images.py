@@ -18,9 +18,9 @@ import img2tri
 from img2tri import mesh_image, mesh_images
 from img2tri.cli import main
 from img2tri.errors import FileError, ImageError, MeshError, ParameterError
+from img2tri.many.image_sources import each_image
 from img2tri.many.in_order import in_order
-from img2tri.many.sources import each_image
-from img2tri.many.workers import Processes
+from img2tri.many.local_workers import Processes
 
 DISCS = [specimens.disc(30 + k, 10.0 + k / 2).astype(bool) for k in range(5)]
 EMPTY = np.zeros((9, 9), bool)

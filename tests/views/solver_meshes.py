@@ -10,9 +10,9 @@ import pytest
 from views.plates import cells
 
 from img2tri.views.formats.solvers.vtu_vtkhdf import to_grid
+from img2tri.views.objects.extruded_wedges import quadratic, wedges
 from img2tri.views.objects.solver_cells import flat_cells, solid_cells
 from img2tri.views.objects.tetrahedra import tetrahedra
-from img2tri.views.objects.wedges import quadratic, wedges
 
 KINDS = ("triangle", "triangle6", "wedge", "wedge15", "tetra", "tetra10")
 HEIGHT, LAYERS = 1.25, 2

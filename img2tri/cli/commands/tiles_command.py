@@ -12,7 +12,7 @@ from img2tri.cli.file_names import mesh_options
 from img2tri.cli.option_arguments import add_mesh_options
 from img2tri.cli.printing import Bar, complain, tell
 from img2tri.errors import ParameterError, integer
-from img2tri.options.typed import whole_number
+from img2tri.options.parsing import whole_number
 
 TILES = """Mesh one image larger than memory, in parts: zarr, .npy, HDF5 or tiled TIFF to
 mesh.zarr, mesh.pvtu or mesh.vtkhdf. The mesh is the same whatever --tile and the
@@ -42,7 +42,7 @@ def add_tiles(commands: Any) -> None:
 
 def run_tiles(arguments: Namespace) -> int:
     """Run ``img2tri tiles``; 0 is its exit status if all went well."""
-    from img2tri.tiles.tiling import mesh_tiles
+    from img2tri.tiles.mesh_tiles import mesh_tiles
 
     workers = integer("workers", arguments.workers, least=1)
     with _client(workers, arguments.scheduler) as client, Bar([arguments.image], quiet=arguments.quiet) as bar:

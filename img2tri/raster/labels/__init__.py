@@ -5,13 +5,13 @@ segmentation          `segment`: which of the ways below a picture takes -> `Seg
 colours_to_gray       colours, palettes and transparency -> one gray value for each pixel
 transparency          the alpha channel -> which pixels are there
 otsu_threshold        gray values -> a mask: a given level, the middle of two values, or Otsu's level
-colour_labels         a few flat colours, counted or listed -> a label map, and the mixes that place the edges
-flat_colours          which colours an image is made of, and which of them a pixel is, or is mixed of
-label_map_detection       whether values look like a label map, which is not to be thresholded by mistake
-label_maps            integers or colours -> a label map, and the label that is not meshed (the background)
+colour_quantization   the option `colors`: a picture with blurred edges -> the nearest of a few flat colours, and the mixes that place edges
+flat_colours          for the former: which colours an image is made of, and which of them a pixel is, or is mixed of
+label_map_detection   whether values look like a label map, which is not to be thresholded by mistake
+label_numbers         the option `labels`: each integer, palette entry or RGB colour -> one number; which of them is background
 absorbed_labels       thin separators: the pixels of some labels given to their nearest neighbours
 cropping              the part of a picture within a box
 connected_components  the pieces of each region that hang together, and how they touch
 specks_and_holes      small components dropped, small holes filled, or only the largest component of each region kept
-early_warnings          what will come of a label map that is hardly meant, told before the work
+early_warnings        what will come of a label map that is hardly meant, told before the work
 """

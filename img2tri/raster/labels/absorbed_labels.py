@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from img2tri.arrays import Bools, Ints
 from img2tri.errors import ImageError
-from img2tri.raster.labels.label_maps import distinct
+from img2tri.raster.labels.label_numbers import distinct
 
 THIN_SHARE = 0.01  # of the pixels: less than that are no lines that part regions
 MOST_INSIDE = 0.1  # of the pixels of a label that are off its edges: more are no lines

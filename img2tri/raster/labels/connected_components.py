@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from img2tri.types import Ints
+from img2tri.arrays import Ints
 
 
 @dataclass(frozen=True, eq=False)

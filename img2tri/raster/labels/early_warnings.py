@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from img2tri.arrays import Ints, label_changes
 from img2tri.errors import ConfettiWarning, ConnectivityWarning, Img2triWarning, SizeWarning
 from img2tri.raster.labels.connected_components import find_components
-from img2tri.raster.labels.label_maps import distinct
+from img2tri.raster.labels.label_numbers import distinct
 from img2tri.raster.labels.segmentation import Segmentation
 
 USUALLY_ASKED = 2000  # triangles: what the default edge length aims at

@@ -28,7 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from img2tri.arrays import Bools, Ints
-from img2tri.raster.labels.label_maps import distinct, label_map
+from img2tri.raster.labels.label_numbers import distinct, label_map
 from img2tri.raster.labels.otsu_threshold import two_valued
 
 MOST_MIXED = 0.1  # of the boundary's pixels

@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from img2tri.arrays import Bools, Floats
 from img2tri.errors import ImageError, ParameterError, finite
 from img2tri.raster.in_memory.array_checks import Pixels, pixels
-from img2tri.types import Bools, Floats
 
 BINS = 65536
 BLOCK = 1 << 20  # pixels counted at a time, so that no wide copy of the whole image is made

@@ -3,7 +3,7 @@
 In: points, segments, the regions on both sides of each segment, the wanted edge length. Out: a triangle mesh that has the segments as
 its edges. The way:
 
-    begin     sizes     how long edges should be at each place                                    size_function.py
+    begin     sizes     how long edges should be at each place                                    interior_sizes.py
               divide    segments too long for that                                                pslg.py
               apexes    a first layer of points in front of the segments                          first_layer.py
               lattice   hexagonal inside; its core becomes triangles at once                      hexagonal_lattice.py
@@ -28,9 +28,9 @@ from img2tri.errors import ParameterError, finite, integer
 from img2tri.triangles.generate.constrained_delaunay import PslgError, check_pslg
 from img2tri.triangles.generate.graded_lattice import lengths_near
 from img2tri.triangles.generate.hexagonal_lattice import Lattice
+from img2tri.triangles.generate.interior_sizes import SizeFunction
 from img2tri.triangles.generate.pslg import Pslg
 from img2tri.triangles.generate.ruppert_refinement import refine_locally
-from img2tri.triangles.generate.size_function import SizeFunction
 from img2tri.triangles.generate.strip import RegionMesh, Strip, finish_strip, lay_strip, relax_strip, with_core
 
 LengthField = Callable[[Floats], Floats]

@@ -16,7 +16,7 @@ import numpy as np
 from img2tri.arrays import Bools, Floats, Ints, Points
 from img2tri.errors import bounded
 from img2tri.triangles.generate.hexagonal_lattice import Lattice
-from img2tri.triangles.generate.size_function import SizeFunction
+from img2tri.triangles.generate.interior_sizes import SizeFunction
 
 RATIO = 3**0.5  # of pitches, from one lattice to the next
 LONGEST = 1.36

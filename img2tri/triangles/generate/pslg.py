@@ -12,8 +12,8 @@ from functools import cached_property
 import numpy as np
 
 from img2tri.arrays import Floats, Ints, Points, runs
+from img2tri.triangles.generate.interior_sizes import SizeFunction
 from img2tri.triangles.generate.quality_smoothing import SlideLines
-from img2tri.triangles.generate.size_function import SizeFunction
 
 ROUND_UP = 0.4  # a segment of n + this many wanted lengths or more is divided into n + 1 parts
 

@@ -34,7 +34,7 @@ from scipy.sparse import csc_array
 
 from img2tri.arrays import Bools, Floats, Ints, Points, blocks
 from img2tri.errors import bounded
-from img2tri.triangles.angles import smallest_angles, smallest_tangents
+from img2tri.triangles.smallest_tangents import smallest_angles, smallest_tangents
 
 TURN = np.exp(2j * np.pi / 3)
 DEFECT = np.array([1, TURN, TURN**2])

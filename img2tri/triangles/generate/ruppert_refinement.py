@@ -11,10 +11,10 @@ from __future__ import annotations
 import numpy as np
 
 from img2tri.arrays import Bools, Ints, Points, as_complex, as_rows, unique_edges
-from img2tri.triangles.angles import narrower
 from img2tri.triangles.generate.constrained_delaunay import ruppert
 from img2tri.triangles.generate.pslg import Pslg
 from img2tri.triangles.generate.quality_smoothing import patch_around, smooth, touching
+from img2tri.triangles.smallest_tangents import narrower
 
 PATCH_RINGS = (3, 3, 6, 12, 24, 1_000_000)  # how far patches reach around bad triangles, then around edges of the rim that were split
 SHORTEST_EDGE = 0.05  # of the shortest segment in the patch: no edge becomes shorter. A stop only: sharp corners would be refined for ever

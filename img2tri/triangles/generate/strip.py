@@ -11,15 +11,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from img2tri.arrays import Bools, Floats, Ints, Points, as_rows
-from img2tri.triangles.angles import narrower
 from img2tri.triangles.generate.constrained_delaunay import triangulate
 from img2tri.triangles.generate.first_layer import apexes, uncrowded
 from img2tri.triangles.generate.graded_lattice import finer, reach
 from img2tri.triangles.generate.hexagonal_lattice import Codes, Core, Lattice
+from img2tri.triangles.generate.interior_sizes import SizeFunction, nearest_of
 from img2tri.triangles.generate.pslg import Pslg
 from img2tri.triangles.generate.quality_smoothing import SAFE, raise_worst_angles, smooth
-from img2tri.triangles.generate.size_function import SizeFunction, nearest_of
 from img2tri.triangles.generate.valence_repair import repair_valences
+from img2tri.triangles.smallest_tangents import narrower
 
 CLEAR = 0.66  # lattice nodes nearer to an outline or apex than this times the wanted length are dropped
 NUDGE, GOLDEN = 1e-7, 0.618  # of the shortest segment: how far free points are put off; of a turn, from one to the next: any odd part

@@ -15,7 +15,7 @@ from scipy.sparse import csc_array, csc_matrix, diags_array
 
 from img2tri.arrays import Floats, Ints, as_complex
 from img2tri.errors import MeshError, finite
-from img2tri.triangles.angles import smallest_tangents
+from img2tri.triangles.smallest_tangents import smallest_tangents
 from img2tri.triangles.tools.inversion_guard import put_back
 from img2tri.triangles.tools.mesh_checks import check_mesh, check_regions, check_selection, check_values
 from img2tri.triangles.tools.topology import curve_vertices

@@ -11,7 +11,7 @@ import numpy as np
 
 from img2tri.arrays import Floats, Ints, as_complex
 from img2tri.errors import bounded
-from img2tri.triangles.angles import smallest_tangents
+from img2tri.triangles.smallest_tangents import smallest_tangents
 
 TANGENT_ROUNDING = 1e-12
 """Part of the tangent that counts as rounding: else a mesh merely shifted would be taken for spoiled."""

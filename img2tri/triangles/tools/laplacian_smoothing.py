@@ -22,7 +22,7 @@ from scipy.sparse import diags_array
 
 from img2tri.arrays import Bools, Floats, Ints, as_complex
 from img2tri.errors import ParameterError, choice, integer
-from img2tri.triangles.angles import smallest_tangents
+from img2tri.triangles.smallest_tangents import smallest_tangents
 from img2tri.triangles.tools.cotangent_laplacian import carry, laplacian, smooth_field
 from img2tri.triangles.tools.curve_fairing import Bounds, fair_curves
 from img2tri.triangles.tools.inversion_guard import put_back

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from img2tri.types import Floats, Ints
+from img2tri.arrays import Floats, Ints
 
 
 def corner_angles(vertices: Floats, triangles: Ints) -> Floats:

@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from img2tri.arrays import unique_edges
+from img2tri.arrays import Floats, Ints, unique_edges
 from img2tri.errors import ParameterError
-from img2tri.types import Floats, Frame, Ints
-from img2tri.views.figures.colours import palette
+from img2tri.types import Frame
+from img2tri.views.figures.region_colours import palette
 from img2tri.views.objects.region_borders import bordering
 
 if TYPE_CHECKING:

@@ -11,11 +11,10 @@ import base64
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from img2tri.arrays import runs, unique_edges
-from img2tri.types import Bools, Floats, Ints
-from img2tri.views.figures.colours import palette
+from img2tri.arrays import Bools, Floats, Ints, runs, unique_edges
 from img2tri.views.figures.corner_angles import corner_angles
 from img2tri.views.figures.image_png import png
+from img2tri.views.figures.region_colours import palette
 from img2tri.views.objects.flat_or_extruded import per_triangle, plane_mesh
 from img2tri.views.objects.region_borders import bordering
 

@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from img2tri.arrays import Floats, Ints
 from img2tri.errors import choice
-from img2tri.types import Floats, Frame, Ints
+from img2tri.types import Frame
 from img2tri.views.figures import figure_parts as parts
 from img2tri.views.figures.corner_angles import corner_angles
 from img2tri.views.formats.atomic_write import known_suffix, store, writable

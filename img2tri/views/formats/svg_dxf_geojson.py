@@ -28,7 +28,7 @@ from numpy.typing import ArrayLike
 
 from img2tri.arrays import Floats, unique_edges
 from img2tri.errors import MeshError
-from img2tri.views.figures.colours import region_colours
+from img2tri.views.figures.region_colours import region_colours
 from img2tri.views.formats.atomic_write import known_suffix, store, writable
 from img2tri.views.formats.solvers.plain_text import ascii_letters
 from img2tri.views.objects.body_per_region import unique_names
@@ -90,7 +90,7 @@ def save_outlines(
     names
         Label -> name. Regions without one are called "region_3" and so on. Layers of a DXF keep letters, digits, "-" and "_".
     colours
-        Label -> (red, green, blue) an SVG fills the region with; regions without one get one of `img2tri.views.figures.colours`.
+        Label -> (red, green, blue) an SVG fills the region with; regions without one get one of `img2tri.views.figures.region_colours`.
     mesh
         Vertices (n, 2) and triangles (m, 3), whose edges are to be drawn too; None draws none.
     bounds

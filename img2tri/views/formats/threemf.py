@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from img2tri.arrays import Floats
-from img2tri.views.figures.colours import region_colours
+from img2tri.views.figures.region_colours import region_colours
 from img2tri.views.formats.number_rows import rows
 from img2tri.views.objects.body_per_region import Body
 from img2tri.views.objects.flat_or_extruded import Surface

@@ -22,9 +22,9 @@ from numpy.typing import ArrayLike
 
 from img2tri.arrays import Floats, Ints
 from img2tri.errors import ParameterError, finite
-from img2tri.views.figures.colours import region_colours
+from img2tri.views.figures.region_colours import region_colours
 from img2tri.views.objects.base_plate import GRAY, PLATE, Base, plate_label
-from img2tri.views.objects.extrusion import extrude
+from img2tri.views.objects.extruded_surface import extrude
 from img2tri.views.objects.flat_or_extruded import Surface, surface
 
 if TYPE_CHECKING:
@@ -78,7 +78,7 @@ def bodies(
         them.
     colours
         Label -> (red, green, blue) of the region, such as those of the image; regions without one get one of
-        `img2tri.views.figures.colours`.
+        `img2tri.views.figures.region_colours`.
     names
         Label -> name. Regions without one are called "region_3" and so on; a name given twice gets the label behind it.
     vertices, triangles, regions, z, cell_data, field_data

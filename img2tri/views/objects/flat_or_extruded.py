@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from img2tri.arrays import Floats, Ints
 from img2tri.errors import MeshError, ParameterError, finite
 from img2tri.views.objects.base_plate import Base, plate_label
-from img2tri.views.objects.extrusion import Extrusion, extrude
+from img2tri.views.objects.extruded_surface import Extrusion, extrude
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,9 +27,9 @@ from numpy.typing import ArrayLike, NDArray
 from img2tri.arrays import Floats, Ints
 from img2tri.errors import MeshError
 from img2tri.views.objects.flat_or_extruded import surface
-from img2tri.views.objects.sets.index_by_value import grouped
 from img2tri.views.objects.sets.named_sets import named_sets
-from img2tri.views.objects.sets.set_numbers import Z_MAX, Z_MIN, file_numbers, set_tags
+from img2tri.views.objects.sets.numbers_in_files import Z_MAX, Z_MIN, file_numbers, set_tags
+from img2tri.views.objects.sets.triangles_by_label import grouped
 
 # The nodes of each side of each kind, corners first.
 CELL_SIDES: dict[str, tuple[tuple[int, ...], ...]] = {
@@ -99,7 +99,7 @@ class Cells:
 
     @property
     def ids(self) -> dict[int, int]:
-        """Label -> its number in files, at least 1 and within 32 bits, see `img2tri.views.objects.sets.set_numbers`."""
+        """Label -> its number in files, at least 1 and within 32 bits, see `img2tri.views.objects.sets.numbers_in_files`."""
         return file_numbers(self.names)
 
     @property
@@ -143,7 +143,7 @@ def flat_cells(
         (p, 2) float64 in world units: the vertices and, for elements of six nodes, those in the middle of edges.
     elements
         (m, 3) int64, counter-clockwise triangles, or (m, 6): these, then the nodes between 0 and 1, 1 and 2, 2 and 0, see
-        `img2tri.views.objects.wedges.quadratic`.
+        `img2tri.views.objects.extruded_wedges.quadratic`.
     regions, z, cell_data, field_data
         As in `img2tri.views.objects.flat_or_extruded.surface`.
     point_data
@@ -203,7 +203,7 @@ def solid_cells(flat: Cells, points: Floats, cells: Ints) -> Cells:
     flat
         The plane mesh, of three or six nodes.
     points, cells
-        The wedges in layers from the bottom up, each in the order of the triangles, as `img2tri.views.objects.wedges.wedges` returns them.
+        The wedges in layers from the bottom up, each in the order of the triangles, see `img2tri.views.objects.extruded_wedges`.
 
     Returns
     -------
@@ -217,7 +217,7 @@ def solid_cells(flat: Cells, points: Floats, cells: Ints) -> Cells:
 
     Examples
     --------
-    >>> from img2tri.views.objects.wedges import wedges
+    >>> from img2tri.views.objects.extruded_wedges import wedges
     >>> triangle = [[0, 0], [1, 0], [0, 1]], [[0, 1, 2]]
     >>> solid = solid_cells(flat_cells(*triangle), *wedges(*triangle, height=1, layers=2)[:2])
     >>> {name: len(sides) for name, sides in solid.sides.items()}, solid.tags  # doctest: +ELLIPSIS

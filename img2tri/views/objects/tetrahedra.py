@@ -44,7 +44,7 @@ def tetrahedra(made: Cells) -> Cells:
     Examples
     --------
     >>> from img2tri.views.objects.solver_cells import flat_cells, solid_cells
-    >>> from img2tri.views.objects.wedges import wedges
+    >>> from img2tri.views.objects.extruded_wedges import wedges
     >>> triangle = [[0, 0], [1, 0], [0, 1]], [[0, 1, 2]]
     >>> cut = tetrahedra(solid_cells(flat_cells(*triangle), *wedges(*triangle, height=1)[:2]))
     >>> cut.kind, cut.cells.tolist(), len(cut.sides["outer"])

@@ -10,7 +10,7 @@ import html
 import numpy as np
 from numpy.typing import NDArray
 
-from img2tri.types import Floats
+from img2tri.arrays import Floats
 
 # The colour map viridis in 17 steps: its lightness goes with the value, for all eyes and in gray.
 RAMP = [

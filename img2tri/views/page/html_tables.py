@@ -12,8 +12,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from img2tri.arrays import Floats
 from img2tri.errors import MeshError
-from img2tri.types import Floats
 
 _DEFECTS = {
     "inverted": "Triangles turned over",

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from img2tri.arrays import Floats, Ints, unique_edges
 from img2tri.types import Frame
-from img2tri.views.figures.colours import palette
+from img2tri.views.figures.region_colours import palette
 from img2tri.views.objects.body_per_region import unique_names
 from img2tri.views.objects.region_borders import bordering
 from img2tri.views.page.histogram_svg import BARS, bins, shade

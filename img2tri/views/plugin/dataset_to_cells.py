@@ -20,7 +20,7 @@ from img2tri.errors import MeshError
 from img2tri.types import Frame
 from img2tri.views.formats.vtp_vtu import VTK_TYPES
 from img2tri.views.objects.sets.named_sets import interfaces_by_name, pieces_by_name, region_names
-from img2tri.views.objects.sets.set_numbers import set_tags
+from img2tri.views.objects.sets.numbers_in_files import set_tags
 from img2tri.views.objects.solver_cells import CELL_SIDES, Cells, flat_cells, solid_cells
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from img2tri.errors import MeshError
-from img2tri.views.figures.colours import palette
+from img2tri.views.figures.region_colours import palette
 from img2tri.views.plugin.dataset_to_cells import written_about
 
 if TYPE_CHECKING:

@@ -16,8 +16,8 @@ from img2tri.triangles.generate import constrained_delaunay as delaunay
 from img2tri.triangles.generate import filling
 from img2tri.triangles.generate.filling import begin, fill, finish
 from img2tri.triangles.generate.graded_lattice import lengths_near
+from img2tri.triangles.generate.interior_sizes import SizeFunction
 from img2tri.triangles.generate.pslg import Pslg
-from img2tri.triangles.generate.size_function import SizeFunction
 
 
 def enclosed(points, segments, left, right):

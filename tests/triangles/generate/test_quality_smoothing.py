@@ -8,7 +8,6 @@ import pytest
 from scipy.spatial import Delaunay
 
 from img2tri.arrays import as_rows
-from img2tri.triangles.angles import smallest_angles
 from img2tri.triangles.generate.quality_smoothing import (
     DEFECT,
     SMOOTH,
@@ -19,6 +18,7 @@ from img2tri.triangles.generate.quality_smoothing import (
     smooth,
 )
 from img2tri.triangles.generate.valence_repair import excess, repair_valences
+from img2tri.triangles.smallest_tangents import smallest_angles
 
 TURN = np.exp(1j * np.pi / 3)
 FEW = ((1, 1.0, 3),)

@@ -12,8 +12,8 @@ from PIL import Image
 from views.plates import cells, ring, strip
 
 from img2tri.errors import MeshError
-from img2tri.views.figures.colours import palette
 from img2tri.views.figures.notebook import LARGEST, html, svg
+from img2tri.views.figures.region_colours import palette
 
 SVG = "{http://www.w3.org/2000/svg}"
 

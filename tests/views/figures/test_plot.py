@@ -13,8 +13,8 @@ from views.plates import cells, ring, strip
 
 from img2tri.errors import FileError, MeshError, ParameterError
 from img2tri.types import Frame
-from img2tri.views.figures.colours import palette
 from img2tri.views.figures.plot import SUFFIXES, draw
+from img2tri.views.figures.region_colours import palette
 
 
 def drawn(figure, kind):

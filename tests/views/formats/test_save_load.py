@@ -321,7 +321,7 @@ def test_a_triangle_of_no_area_is_written_as_it_is(tmp_path):
 
 
 def test_colours_are_apart():
-    from img2tri.views.figures.colours import palette
+    from img2tri.views.figures.region_colours import palette
 
     colours = palette(60).astype(int)
     assert len(np.unique(colours, axis=0)) == 60

@@ -7,8 +7,8 @@ import pytest
 from views.solver_meshes import BOUNDS, HEIGHT, KINDS, LAYERS, NAMES, SIZE, TAGS, TEXTS, made, plate, sizes
 
 from img2tri import MeshError
+from img2tri.views.objects.extruded_wedges import quadratic, wedges
 from img2tri.views.objects.solver_cells import CELL_SIDES, flat_cells, solid_cells
-from img2tri.views.objects.wedges import quadratic, wedges
 
 SOLIDS = KINDS[2:4]
 

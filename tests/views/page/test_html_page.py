@@ -16,8 +16,8 @@ from views.plates import ring, strip
 import img2tri
 from img2tri.errors import MeshError, ParameterError
 from img2tri.types import Frame
-from img2tri.views.figures.colours import palette
 from img2tri.views.figures.image_png import png
+from img2tri.views.figures.region_colours import palette
 from img2tri.views.page import html_tables as tables
 from img2tri.views.page.histogram_svg import chart
 from img2tri.views.page.html_page import page

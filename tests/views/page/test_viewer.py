@@ -16,7 +16,7 @@ from views.plates import cells, ring
 import img2tri
 from img2tri.triangles.tools.quality_summary import measure
 from img2tri.types import Frame
-from img2tri.views.figures.colours import palette
+from img2tri.views.figures.region_colours import palette
 from img2tri.views.page.html_page import page
 
 pytestmark = pytest.mark.tools

@@ -9,7 +9,7 @@ import pyvista
 
 import img2tri
 from img2tri.errors import MeshError
-from img2tri.views.figures.colours import palette
+from img2tri.views.figures.region_colours import palette
 
 IMAGE = np.kron(np.array([[1, 1], [2, 5]], np.uint8), np.ones((30, 30), np.uint8))
 

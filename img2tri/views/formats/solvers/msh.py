@@ -1,8 +1,8 @@
 """MSH, the format of Gmsh, version 4.1 or 2.2, in text: regions and sets of facets are physical groups with their names.
 
-Physical groups have the numbers of `img2tri.views.objects.sets.set_numbers`: those of regions are their labels wherever they can be, and
-no set has the number of a region, as many readers go by numbers without their dimension. Nodes and elements are numbered in the order of
-the file, which some readers take for granted: nodes as in the mesh, facets before cells, cells by region.
+Physical groups have the numbers of `img2tri.views.objects.sets.numbers_in_files`: those of regions are their labels wherever they can be,
+and no set has the number of a region, as many readers go by numbers without their dimension. Nodes and elements are numbered in the order
+of the file, which some readers take for granted: nodes as in the mesh, facets before cells, cells by region.
 
 An entity is a piece of a set, or a region; in version 4.1 a piece is in the group of its set and in one of its own, in version 2.2, where
 an element has one group, its number is that of its entity. Nodes of periodic meshes are paired in ``$Periodic``, values of cells and nodes

@@ -12,7 +12,7 @@ Both files have the same points, in two coordinates where the mesh lies at z = 0
 
 All numbers are in the XML itself, hence the encoding; so there is no HDF5 file that could get lost. The values are the labels of regions,
 or, as measures in FEniCSx must not be negative, the next free number for labels below 1; and the tags of sets, see
-`img2tri.views.objects.sets.set_numbers`. Where a set has pieces, a second Attribute, ``piece``, has their tags. XDMF has no place for
+`img2tri.views.objects.sets.numbers_in_files`. Where a set has pieces, a second Attribute, ``piece``, has their tags. XDMF has no place for
 names of values; they are in an Information, where the reader of meshio finds them. The ends of wedges are triangles while their walls are
 not, so they have a file of their own.
 """
@@ -30,7 +30,7 @@ from img2tri.arrays import Floats, Ints
 from img2tri.views.formats.number_rows import real_rows, whole_rows
 from img2tri.views.formats.solvers.plain_text import label_table
 from img2tri.views.formats.vtp_vtu import xml_comments
-from img2tri.views.objects.sets.set_numbers import Z_MAX, Z_MIN
+from img2tri.views.objects.sets.numbers_in_files import Z_MAX, Z_MIN
 from img2tri.views.objects.solver_cells import Cells
 
 TOPOLOGIES = {

@@ -9,8 +9,8 @@ first of these that fits:
 4. ``bone__cartilage``: on either side is a region; the one with the lower label comes first.
 
 Beside the whole there are its pieces, where there are several: ``left_1``, ``left_2``, ``outer_1``..., see
-`img2tri.views.objects.sets.set_pieces` for what is a piece and which comes first. Formats in which a facet has one tag give it that of the
-whole.
+`img2tri.views.objects.sets.split_at_corners` for what is a piece and which comes first. Formats in which a facet has one tag give it
+that of the whole.
 
 An edge is a side of a triangle, numbered as in `img2tri.views.objects.side_twins`. A boundary ring is followed by going round its vertices
 from twin to twin, so that where a mesh touches itself in one vertex only, its parts stay apart, as they are for the pixels.
@@ -26,9 +26,9 @@ import numpy as np
 from img2tri.arrays import Bools, Floats, Ints
 from img2tri.errors import ParameterError
 from img2tri.views.objects.body_per_region import unique_names
-from img2tri.views.objects.sets.index_by_value import grouped
-from img2tri.views.objects.sets.set_numbers import FRAME, OUTER, file_numbers, set_tags
-from img2tri.views.objects.sets.set_pieces import connected_pieces, outer_pieces
+from img2tri.views.objects.sets.numbers_in_files import FRAME, OUTER, file_numbers, set_tags
+from img2tri.views.objects.sets.split_at_corners import connected_pieces, outer_pieces
+from img2tri.views.objects.sets.triangles_by_label import grouped
 from img2tri.views.objects.side_twins import next_side, side_twins
 
 _ON_FRAME = 1e-9  # how far from the frame, relative to the mesh and its place, a vertex still lies on it

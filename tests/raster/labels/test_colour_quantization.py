@@ -10,7 +10,7 @@ from PIL import Image, ImageDraw
 
 from img2tri import mesh_image
 from img2tri.errors import ParameterError
-from img2tri.raster.labels.colour_labels import label_by_colours
+from img2tri.raster.labels.colour_quantization import label_by_colours
 from img2tri.raster.labels.flat_colours import assigned, find_colours
 
 RED, BLUE, YELLOW = (220, 40, 40), (40, 160, 220), (250, 210, 60)

@@ -13,7 +13,7 @@ from img2tri.cli.job import Job, Outcome
 from img2tri.cli.meshing_job import held, make
 from img2tri.errors import ParameterError, integer
 from img2tri.many.in_order import in_order
-from img2tri.many.workers import Workers, local_workers
+from img2tri.many.local_workers import Workers, local_workers
 
 
 @contextmanager

@@ -19,8 +19,8 @@ from img2tri import __version__
 from img2tri.errors import ImageError, ParameterError
 from img2tri.options.all_options import OPTIONS, checked, plain
 from img2tri.raster.labels.otsu_threshold import otsu_class
-from img2tri.tiles.plans import MARGIN_EDGES, Cell, Plan, block_size
-from img2tri.tiles.sources import PixelSource
+from img2tri.tiles.block_plan import MARGIN_EDGES, Cell, Plan, block_size
+from img2tri.tiles.pixel_source import PixelSource
 from img2tri.types import Frame
 
 REFUSED = {

@@ -7,7 +7,7 @@ import oracles
 from scipy.spatial import Delaunay
 
 from img2tri.arrays import as_complex
-from img2tri.triangles.angles import narrower, smallest_angles, smallest_tangents
+from img2tri.triangles.smallest_tangents import narrower, smallest_angles, smallest_tangents
 
 
 def random_mesh(seed):

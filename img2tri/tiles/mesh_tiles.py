@@ -1,9 +1,9 @@
 """mesh_tiles: an image larger than memory -> a mesh in parts, block by block, on one process or a Dask cluster.
 
-    survey    what holds for the whole: level, default edge length, a hash of the pixels          survey
-    mesh      each block in its window, fitted to its neighbours', colour by colour               blocks, merging
-    check     every seam edge has its partner; numbers of vertices                                numbering
-    save      parts, one after the other                                                          outputs
+    survey    what holds for the whole: level, default edge length, a hash of the pixels          first_pass
+    mesh      each block in its window, fitted to its neighbours', colour by colour               mesh_block, merge_pieces
+    check     every seam edge has its partner; numbers of vertices                                seam_matching
+    save      parts, one after the other                                                          save_parts
 
 Pieces are kept beside the output while the work is under way. A second run goes on where the first ended.
 """
@@ -24,15 +24,15 @@ import numpy as np
 from img2tri.arrays import as_rows
 from img2tri.errors import FileError, Img2triError, integer
 from img2tri.options.all_options import plain
-from img2tri.tiles.blocks import mesh_block
-from img2tri.tiles.numbering import Seam, global_numbers, numbered_vertices
-from img2tri.tiles.outputs import FORMATS, Part, save_parts
-from img2tri.tiles.pieces import Piece, Sides, join_pieces
-from img2tri.tiles.plans import Cell, Plan, colour
-from img2tri.tiles.sources import open_source
-from img2tri.tiles.storage import load_piece, write
-from img2tri.tiles.survey import decided, fingerprint, first_plan, look
-from img2tri.triangles.angles import smallest_angles
+from img2tri.tiles.block_plan import Cell, Plan, colour
+from img2tri.tiles.first_pass import decided, fingerprint, first_plan, look
+from img2tri.tiles.mesh_block import mesh_block
+from img2tri.tiles.piece_files import load_piece, write
+from img2tri.tiles.piece_seams import Piece, Sides, join_pieces
+from img2tri.tiles.pixel_source import open_source
+from img2tri.tiles.save_parts import FORMATS, Part, save_parts
+from img2tri.tiles.seam_matching import Seam, global_numbers, numbered_vertices
+from img2tri.triangles.smallest_tangents import smallest_angles
 
 MOST_AREA_ERROR, FEW_PIXELS = 0.01, 16  # of the whole, but of no fewer pixels, as in the certificate of a mesh in memory
 TilesProgress = Callable[[str, float], object]

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from img2tri.errors import Img2triError
-from img2tri.shapes.periodic.pairs import find_periodic_pairs
+from img2tri.shapes.periodic.paired_outlines import find_periodic_pairs
 from img2tri.shapes.place.placement import place_outlines
 from img2tri.shapes.simplify.simplification import space_evenly
 from img2tri.shapes.trace.crack_edges import find_crack_edges
@@ -91,6 +91,6 @@ def test_pairs_get_the_shorter_of_their_lengths():
 def test_sides_that_never_agree_are_an_error(monkeypatch):
     pairs, d = drafted("x")
     monkeypatch.setattr(type(pairs), "_agree", lambda *_: False)
-    monkeypatch.setattr("img2tri.shapes.periodic.pairs.MOST_MATCHES", 3)
+    monkeypatch.setattr("img2tri.shapes.periodic.paired_outlines.MOST_MATCHES", 3)
     with pytest.raises(Img2triError, match="opposite sides: expected to be done within 3 rounds"):
         pairs.enforce_tolerance(d, tolerance=0.5)

@@ -9,7 +9,7 @@ from oracles import areas, pixel_topology
 from views.plates import cells, euler, is_closed, ring, strip, volume
 
 from img2tri.errors import MeshError, ParameterError
-from img2tri.views.objects.extrusion import extrude
+from img2tri.views.objects.extruded_surface import extrude
 
 
 def test_a_ring_becomes_a_closed_solid_with_a_through_hole():

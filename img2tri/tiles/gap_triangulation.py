@@ -13,13 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from img2tri.arrays import Bools, Floats, Ints, Points, as_rows
-from img2tri.tiles.pieces import SeamError, Sides
-from img2tri.triangles.angles import narrower
+from img2tri.tiles.piece_seams import SeamError, Sides
 from img2tri.triangles.generate.constrained_delaunay import SUPER, PslgError, insert
 from img2tri.triangles.generate.pslg import Pslg
 from img2tri.triangles.generate.quality_smoothing import raise_worst_angles, smooth
 from img2tri.triangles.generate.ruppert_refinement import refine_locally
 from img2tri.triangles.generate.valence_repair import repair_valences
+from img2tri.triangles.smallest_tangents import narrower
 
 REPAIRS = 2  # rounds of smoothing, valence repair and triangulation
 PATCHES = (2, 4, 7, 11)  # rings of triangles around bad ones that are triangulated anew

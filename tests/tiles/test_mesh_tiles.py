@@ -12,8 +12,8 @@ from specimens import MASKS, polycrystal
 
 from img2tri import FileError, ImageError, ParameterError, mesh_image, mesh_tiles
 from img2tri.certificate.report import certify
-from img2tri.tiles import blocks, plans
-from img2tri.tiles.outputs import load_tiles
+from img2tri.tiles import block_plan, mesh_block
+from img2tri.tiles.save_parts import load_tiles
 
 
 def blobs(n=400, sigma=8.0, seed=0):
@@ -23,7 +23,7 @@ def blobs(n=400, sigma=8.0, seed=0):
 @pytest.fixture(autouse=True)
 def small(monkeypatch):
     """Blocks of 128 px, so that small images have seams; margins may overlap what is one block away, but for edges of 4 px do not."""
-    monkeypatch.setattr(plans, "BLOCK_SIDE", 128)
+    monkeypatch.setattr(block_plan, "BLOCK_SIDE", 128)
 
 
 def judged(image, folder, **options):
@@ -63,7 +63,7 @@ def test_gray_values_place_the_outlines_across_seams(tmp_path):
 
 @pytest.mark.parametrize("name", ["hole of a pixel", "touching corners"])
 def test_seams_may_cut_a_specimen_at_any_place(name, monkeypatch, tmp_path):
-    monkeypatch.setattr(plans, "BLOCK_SIDE", 64)
+    monkeypatch.setattr(block_plan, "BLOCK_SIDE", 64)
     specimen = MASKS[name]
     h, w = specimen.shape
     for offset in range(max(h, w) + 1):
@@ -95,8 +95,8 @@ def test_a_second_run_goes_on_where_the_first_was_stopped(tmp_path, monkeypatch)
         mesh_tiles(mask, tmp_path / "mesh.zarr", edge_length=4.0, progress=stop)
     made = len(list((tmp_path / ".mesh.zarr.work").glob("piece-*")))
     assert 0 < made < 9
-    calls, fitting = [], blocks._fitting
-    monkeypatch.setattr(blocks, "_fitting", lambda *given: (calls.append(given[-1]), fitting(*given))[1])
+    calls, fitting = [], mesh_block._fitting
+    monkeypatch.setattr(mesh_block, "_fitting", lambda *given: (calls.append(given[-1]), fitting(*given))[1])
     mesh_tiles(mask, tmp_path / "mesh.zarr", edge_length=4.0)
     assert len(calls) == 9 - made
     one, other = load_tiles(tmp_path / "whole.zarr"), load_tiles(tmp_path / "mesh.zarr")

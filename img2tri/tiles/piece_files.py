@@ -14,8 +14,8 @@ import numpy as np
 
 from img2tri.arrays import Ints
 from img2tri.errors import FileError
-from img2tri.tiles.pieces import Piece, taken
-from img2tri.tiles.plans import Cell, Plan, colour
+from img2tri.tiles.block_plan import Cell, Plan, colour
+from img2tri.tiles.piece_seams import Piece, taken
 
 ARRAYS = ("vertices", "triangles", "regions", "seam", "beyond")
 

@@ -13,8 +13,8 @@ from views.solver_meshes import elements
 from img2tri.arrays import unique_edges
 from img2tri.errors import MeshError, ParameterError
 from img2tri.triangles.tools import topology
+from img2tri.views.objects.extruded_wedges import quadratic, wedges
 from img2tri.views.objects.region_borders import bordering
-from img2tri.views.objects.wedges import quadratic, wedges
 
 GAUSS = np.array([-1, 1]) / np.sqrt(3)
 INSIDE = np.array([[1, 1], [4, 1], [1, 4]]) / 6  # of the triangle, exact for squares

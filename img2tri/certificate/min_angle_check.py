@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from img2tri.arrays import Floats, Ints, as_complex
-from img2tri.triangles.angles import smallest_tangents
+from img2tri.triangles.smallest_tangents import smallest_tangents
 from img2tri.triangles.tools.quality_summary import measure
 
 ROUNDED = 1e-6  # relative: tangents that differ by less may be those of equal angles

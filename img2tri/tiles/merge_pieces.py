@@ -14,11 +14,11 @@ import numpy as np
 import shapely
 
 from img2tri.arrays import Bools, Floats, Ints, Points, as_rows
-from img2tri.tiles.attempts import EATEN, MOST_ATTEMPTS, SEGMENT_LENGTHS, WIDTHS, Attempt
-from img2tri.tiles.cavities import Gap, GapWalls, gap_filled, improved, longest_sides
-from img2tri.tiles.pieces import Piece, SeamError, Sides, evened, find_stubs, seams_around, taken
-from img2tri.tiles.splices import Ways, splice
-from img2tri.triangles.angles import smallest_angles
+from img2tri.tiles.gap_attempts import EATEN, MOST_ATTEMPTS, SEGMENT_LENGTHS, WIDTHS, Attempt
+from img2tri.tiles.gap_triangulation import Gap, GapWalls, gap_filled, improved, longest_sides
+from img2tri.tiles.outline_splices import Ways, splice
+from img2tri.tiles.piece_seams import Piece, SeamError, Sides, evened, find_stubs, seams_around, taken
+from img2tri.triangles.smallest_tangents import smallest_angles
 
 LOOSE_CLEARANCE = 0.66  # of the longest edge at a vertex: loose points nearer to the border are left out
 SAMPLES = 4  # places along each edge of the border, to measure distances to

@@ -8,7 +8,7 @@ from views.plates import cells
 
 from img2tri import mesh_image
 from img2tri.views.objects.sets.named_sets import named_sets
-from img2tri.views.objects.sets.set_numbers import file_numbers, set_tags
+from img2tri.views.objects.sets.numbers_in_files import file_numbers, set_tags
 
 
 def pieces(sets, whole):
