@@ -23,8 +23,9 @@ kept: bool = report.kept
 report.kapt
 mesh_image("slice.png", edge_lenth=8)
 mesh_image("slice.png", recipe=7)
+mesh_image("slice.png", min_angle="25")
 """
-ERRORS = {7: "attr-defined", 8: "call-arg", 9: "arg-type"}  # by line
+ERRORS = {7: "attr-defined", 8: "call-arg", 9: "arg-type", 10: "arg-type"}  # by line
 
 
 def test_the_package_says_that_it_is_typed():

@@ -918,7 +918,7 @@ def test_quality_of_what_is_no_mesh_on_stdin(typed, said, disc, monkeypatch, cap
 
 
 def test_confetti_is_told_of_with_the_option_that_helps(tmp_path, capsys):
-    noise = np.random.default_rng(0).random((250, 250)) < 0.3
+    noise = np.random.default_rng(0).random((150, 150)) < 0.3
     Image.fromarray(noise.astype(np.uint8) * 255).save(tmp_path / "noise.png")
     stages = []
     mesh_image(noise, edge_length=8, progress=lambda stage, _: stages.append(stage))

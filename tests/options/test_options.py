@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import inspect
 import json
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -57,33 +55,6 @@ def test_a_default_passes_its_own_check(name):
     option = OPTIONS[name]
     assert option.default is None or option.check(name, option.default) == option.default
     assert option.default is not None or takes_none(name)
-
-
-TYPED = """
-from img2tri import mesh_image, TriangleMesh
-mesh: TriangleMesh = mesh_image("image.png", edge_length=4, labels=[1, 2], min_angle=25)
-mesh_image("image.png", edge_lenght=4)
-mesh_image("image.png", min_angle="25")
-"""
-
-
-def test_a_type_checker_knows_names_and_types_of_options(tmp_path):
-    pytest.importorskip("mypy")
-    (tmp_path / "user.py").write_text(TYPED)
-    command = [sys.executable, "-m", "mypy", "--follow-imports=silent", "--cache-dir", str(tmp_path), "user.py"]
-    found = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False, env=_here()).stdout
-    assert 'Unexpected keyword argument "edge_lenght"' in found
-    assert 'Argument "min_angle" to "mesh_image" has incompatible type "str"' in found
-    assert "Found 2 errors" in found
-
-
-def _here():
-    import os
-    from pathlib import Path
-
-    import img2tri
-
-    return os.environ | {"MYPYPATH": str(Path(img2tri.__file__).parents[1])}
 
 
 # ---- what is refused ----
