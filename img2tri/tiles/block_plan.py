@@ -84,7 +84,11 @@ class Plan:
         """Where the piece of a block may take triangles."""
         rows, columns = self.window(cell, 0)
         corners = self.frame.plane([rows.start, rows.stop], [columns.start, columns.stop])
-        (x0, x1), (y0, y1) = np.sort(corners[:, 0]), np.sort(corners[:, 1])
+        (x0, x1), (y0, y1) = np.sort(corners[:, 0]).tolist(), np.sort(corners[:, 1]).tolist()
+        # Where the image ends, nothing lies outside.
+        below, above = (cell[0] == 0, cell[0] == self.grid[0] - 1)[:: -1 if self.frame.upward else 1]
+        x0, x1 = (-math.inf if cell[1] == 0 else x0), (math.inf if cell[1] == self.grid[1] - 1 else x1)
+        y0, y1 = (-math.inf if below else y0), (math.inf if above else y1)
         margin = scale * self.margin
         step = self.frame.plane([0, self.block], [0, self.block])
         width, height = float(abs(step[1, 0] - step[0, 0])), float(abs(step[1, 1] - step[0, 1]))
@@ -92,7 +96,7 @@ class Plan:
 
         def outside(z: Points) -> Floats:
             across, up = np.maximum(x0 - z.real, z.real - x1), np.maximum(y0 - z.imag, z.imag - y1)
-            return np.asarray(np.maximum(np.maximum(across, up), 0))
+            return np.asarray(np.maximum(across, up))
 
         def takes(z: Points) -> Bools:
             # Its own block, and what blocks of lower colours have left.

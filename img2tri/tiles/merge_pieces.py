@@ -24,6 +24,7 @@ LOOSE_CLEARANCE = 0.66  # of the longest edge at a vertex: loose points nearer t
 SAMPLES = 4  # places along each edge of the border, to measure distances to
 # Of the margin: from where on stubs, walls and triangles of the gap do not count. It is open at its ends, beyond what is taken.
 WALLED, STUBS, FILLED, MET, LOST, TAKEN = 0.85, 0.8, 0.7, 0.6, 0.5, 0.35
+CORE = 1.5  # margins: a triangle of the new mesh farther from finished pieces and borders of its block stays as it is
 
 
 @dataclass(frozen=True)
@@ -33,7 +34,8 @@ class Territory:
     Attributes
     ----------
     outside
-        Function of places (k,) that returns how far they lie outside of the piece's own block; 0 within.
+        Function of places (k,) that returns how far they lie outside of the piece's own block; within, less than 0: how far from where
+        it meets others, minus infinity if it meets none.
     takes
         Function of places (k,): whether a triangle whose middle lies there is the piece's, if no finished piece covers it.
     margin
@@ -50,7 +52,7 @@ class _Both:
     """New mesh and finished pieces in the same numbers: vertices, triangles with codes of their regions, and the border of the old ones.
 
     `border` has the finished pieces on its left, `own` and `beyond` are the codes of the regions on both sides;
-    `fresh` are those edges of it beyond which finished triangles were given up.
+    `fresh` are those edges of it beyond which finished triangles were given up. `cut` are the edges towards the core of the new mesh.
     """
 
     z: Points
@@ -62,6 +64,7 @@ class _Both:
     own: Ints
     beyond: Ints
     fresh: Bools
+    cut: Ints
 
     def covered(self, places: Points) -> Bools:
         """Tell which places lie in finished pieces, or on their border."""
@@ -100,20 +103,51 @@ def merge(
         If outlines do not correspond, or no good triangles were found for the gap, whatever its width.
     """
     labels = np.unique(np.concatenate([mesh.regions, finished.regions, finished.beyond]))
+    outside = territory.outside(mesh.vertices)
+    reached = max(0.0, -float(territory.outside(finished.vertices).min(initial=0.0)))
+    core = (outside < -reached - CORE * territory.margin)[mesh.triangles].all(axis=1)
+    band, cut = _without(mesh, core)
     attempt = Attempt(0, [], TAKEN * territory.margin)
     middle = finished.vertices[finished.triangles].mean(axis=1)
     far = territory.outside(finished.vertices)[finished.triangles].max(axis=1) > LOST * territory.margin
     for _ in range(MOST_ATTEMPTS):
         lost = attempt.near(territory.margin * np.asarray(EATEN), middle) & ~far
-        both = _together(mesh, finished, lost, labels, territory)
+        both = _together(band, finished, lost, labels, territory, cut)
         try:
-            return _merged(both, labels, territory, attempt, off, tolerance, min_angle), lost
+            return _with_core(mesh, core, _merged(both, labels, territory, attempt, off, tolerance, min_angle)), lost
         except SeamError as error:
             attempt, problem = attempt.raised(error.at), error
     raise problem
 
 
-def _together(mesh: Piece, finished: Piece, lost: Bools, labels: Ints, territory: Territory) -> _Both:
+def _with_core(mesh: Piece, core: Bools, piece: Piece) -> Piece:
+    """Join the core of a new mesh and what became of the rest; vertices of the new mesh stay in their order, others follow."""
+    n = len(mesh.vertices)
+    rim = np.unique(mesh.triangles[~core])
+    places, number = np.unique(np.concatenate([mesh.vertices[rim], piece.vertices]), return_inverse=True)
+    known = np.full(len(places), -1)
+    known[number[: len(rim)]] = rim
+    own = known[number[len(rim) :]]
+    own[own < 0] = n + np.arange((own < 0).sum())
+    vertices = np.concatenate([mesh.vertices, piece.vertices[own >= n]])
+    triangles = np.concatenate([mesh.triangles[core], own[piece.triangles]])
+    used = np.zeros(len(vertices), bool)
+    used[triangles] = True
+    local = np.cumsum(used) - 1
+    regions = np.concatenate([mesh.regions[core], piece.regions])
+    return Piece(vertices[used], local[triangles], regions, local[own[piece.seam]], piece.beyond)
+
+
+def _without(mesh: Piece, core: Bools) -> tuple[Piece, Ints]:
+    """Return a mesh without its core, which no other piece is near to, and the edges (k, 2) between both, the rest on their left."""
+    used, local = np.unique(mesh.triangles[~core], return_inverse=True)
+    inner = np.isin(used, mesh.triangles[core])
+    local = local.reshape(-1, 3)
+    edges, _ = Sides.of(local, len(used)).bare()
+    return Piece(mesh.vertices[used], local, mesh.regions[~core], mesh.seam, mesh.beyond), edges[inner[edges].all(axis=1)]
+
+
+def _together(mesh: Piece, finished: Piece, lost: Bools, labels: Ints, territory: Territory, cut: Ints) -> _Both:
     """Bring both into the same numbers; only what is near counts, and of the finished triangles those not given up."""
     z, number = np.unique(np.concatenate([mesh.vertices, finished.vertices]), return_inverse=True)
     n, margin = len(z), territory.margin
@@ -138,7 +172,7 @@ def _together(mesh: Piece, finished: Piece, lost: Bools, labels: Ints, territory
         goes_on = keys[at] == wanted
         beyond[goes_on] = np.searchsorted(labels, beyond_seam[at[goes_on]]) + 1
     fresh = (beyond > 0) & ~np.isin(wanted, before)
-    return _Both(z, outside, new, codes, old, border, old_codes[owner], beyond, fresh)
+    return _Both(z, outside, new, codes, old, border, old_codes[owner], beyond, fresh, number[cut])
 
 
 def _merged(
@@ -164,9 +198,10 @@ def _merged(
         is_gap = np.arange(len(triangles)) >= len(triangles) - len(made)
         fixed = np.zeros(len(both.z), bool)
         fixed[both.old] = True
+        fixed[both.cut] = True
         # An angle that the image's own corners force is no fault of the seam.
         least = min(min_angle, float(smallest_angles(both.z, new).min()))
-        z, triangles, code = improved(z, triangles, code, is_gap, fixed, both.border, least - 1e-9)
+        z, triangles, code = improved(z, triangles, code, is_gap, fixed, np.concatenate([both.border, both.cut]), least - 1e-9)
         _check_outlines(z, triangles, code, both, territory, off, tolerance)
     near = rim & (both.outside[both.border].max(axis=1) < MET * territory.margin)
     lonely = ~_met(both.border[near], triangles, len(z))
@@ -192,8 +227,9 @@ def _check_outlines(
     edges = edges[territory.outside(z[edges]).max(axis=1) < MET * territory.margin]
     known = _outline_edges(both.new, both.new_codes, len(z))
     known = known[both.outside[known].max(axis=1) < MET * territory.margin]
-    for old in (known, both.border):
-        edges = edges[~np.isin(edges.min(axis=1) * len(z) + edges.max(axis=1), old.min(axis=1) * len(z) + old.max(axis=1))]
+    known = _other_than(known, both.cut, len(z))
+    for old in (known, both.border, both.cut):
+        edges = _other_than(edges, old, len(z))
     if len(edges):
         distance = off(z, edges)
         allowed = max(tolerance, float(off(both.z, known).max(initial=0.0)) if distance.max() > tolerance else 0.0)
@@ -207,6 +243,12 @@ def _outline_edges(triangles: Ints, code: Ints, n: int) -> Ints:
     left, right = sides.codes(code)
     edges: Ints = np.stack([sides.low, sides.high], axis=1)[left != right]
     return edges
+
+
+def _other_than(edges: Ints, others: Ints, n: int) -> Ints:
+    """Return those of the edges that are none of others, whichever way round."""
+    kept: Ints = edges[~np.isin(edges.min(axis=1) * n + edges.max(axis=1), others.min(axis=1) * n + others.max(axis=1))]
+    return kept
 
 
 def _met(border: Ints, triangles: Ints, n: int) -> Bools:

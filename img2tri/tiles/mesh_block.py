@@ -16,11 +16,11 @@ from img2tri.options.all_options import MeshOptions, of
 from img2tri.options.mesh_options import FillOptions, OutlineOptions, SizeOptions
 from img2tri.raster.labels.segmentation import Segmentation
 from img2tri.recipes.conforming import conform, trace_outlines, wanted_sizes
-from img2tri.tiles.block_plan import SMOOTHED, Cell, Plan, colour
-from img2tri.tiles.merge_pieces import merge
-from img2tri.tiles.piece_files import facts_of, load_piece, lost_name, packed, piece_path, write
+from img2tri.tiles.merge_pieces import Territory, merge
 from img2tri.tiles.piece_seams import Piece, SeamError, join_pieces
+from img2tri.tiles.block_plan import SMOOTHED, Cell, Plan, colour
 from img2tri.tiles.pixel_source import PixelSource
+from img2tri.tiles.piece_files import facts_of, load_piece, lost_name, packed, piece_path, write
 from img2tri.triangles.tools.topology import curve_edges
 from img2tri.types import Frame, Outlines
 
@@ -52,7 +52,6 @@ def mesh_block(plan: Plan, source: PixelSource, folder: Path, cell: Cell) -> dic
 def _fitting(plan: Plan, source: PixelSource, folder: Path, cell: Cell) -> tuple[Piece, dict[str, Any], dict[str, Any]]:
     near = [other for other in plan.neighbours(cell) if colour(other) < colour(cell)]
     loaded = [load_piece(folder, plan, other, colour(cell)) for other in near]
-    finished = join_pieces([piece for piece, _ in loaded])
     within = plan.frame.length("tolerance", plan.options["tolerance"]) / plan.frame.pixel
     problem: SeamError | None = None
     for scale in MARGIN_SCALES:
@@ -60,6 +59,8 @@ def _fitting(plan: Plan, source: PixelSource, folder: Path, cell: Cell) -> tuple
         values = source.read(rows, columns)
         mesh, outlines = window_mesh(values, plan, rows, columns)
         off, territory = _measure(outlines), plan.territory(cell, scale)
+        parts = [_near(piece, territory) for piece, _ in loaded]
+        finished = join_pieces([piece for piece, _ in parts])
         try:
             piece, replaced = merge(mesh, finished, territory, off, tolerance=within, min_angle=plan.options["min_angle"])
             distance = _distance(piece, off)
@@ -69,11 +70,11 @@ def _fitting(plan: Plan, source: PixelSource, folder: Path, cell: Cell) -> tuple
             problem = error
             continue
         lost, first = {}, 0
-        for other, (old, numbers) in zip(near, loaded, strict=True):
-            gone = replaced[first : first + len(old.triangles)]
-            first += len(old.triangles)
+        for other, (_, numbers), (_, kept) in zip(near, loaded, parts, strict=True):
+            gone = replaced[first : first + len(kept)]
+            first += len(kept)
             if gone.any():
-                lost[lost_name(other)] = numbers[gone]
+                lost[lost_name(other)] = numbers[kept[gone]]
         facts = {
             "cell": list(cell),
             "scale": scale,
@@ -88,6 +89,17 @@ def _fitting(plan: Plan, source: PixelSource, folder: Path, cell: Cell) -> tuple
         f"the mesh of this block and those of its neighbours could not be joined{at}: {problem}; "
         "try another edge_length or tolerance, or mesh_image(..., crop=) for the parts"
     ) from problem
+
+
+def _near(piece: Piece, territory: Territory) -> tuple[Piece, Ints]:
+    """Return the part of a finished piece that is near a block, and which triangles these are. Its own edge is too far away to matter."""
+    close = territory.outside(piece.vertices) < 2 * territory.margin
+    kept = np.flatnonzero(close[piece.triangles].all(axis=1))
+    used = np.flatnonzero(close)
+    local = np.cumsum(close) - 1
+    seam = close[piece.seam].all(axis=1)
+    part = Piece(piece.vertices[used], local[piece.triangles[kept]], piece.regions[kept], local[piece.seam[seam]], piece.beyond[seam])
+    return part, kept
 
 
 def _pixels(values: NDArray[Any], plan: Plan, cell: Cell, rows: slice, columns: slice) -> dict[str, Any]:

@@ -14,8 +14,8 @@ import numpy as np
 
 from img2tri.arrays import Ints
 from img2tri.errors import FileError
+from img2tri.tiles.piece_seams import Piece, without
 from img2tri.tiles.block_plan import Cell, Plan, colour
-from img2tri.tiles.piece_seams import Piece, taken
 
 ARRAYS = ("vertices", "triangles", "regions", "seam", "beyond")
 
@@ -72,5 +72,5 @@ def load_piece(folder: Path, plan: Plan, cell: Cell, before: int = 4) -> tuple[P
                 if lost_name(cell) in file:
                     left[file[lost_name(cell)]] = False
     if not left.all():
-        piece = taken(piece.vertices, piece.triangles, piece.regions, left, piece.seam, piece.beyond)
+        piece = without(piece, ~left)
     return piece, np.flatnonzero(left)

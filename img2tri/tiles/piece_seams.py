@@ -137,6 +137,23 @@ def taken(vertices: Points, triangles: Ints, regions: Ints, chosen: Bools, met: 
     return Piece(vertices[used], local.reshape(-1, 3), regions[chosen], np.searchsorted(used, seam), beyond)
 
 
+def without(piece: Piece, gone: Bools) -> Piece:
+    """Return a piece without some of its triangles (m,), which others have now."""
+    n = len(piece.vertices)
+    touched = np.zeros(n, bool)
+    touched[piece.triangles[gone]] = True
+    near = touched[piece.triangles].any(axis=1)
+    none = np.zeros((0, 2), np.int64)
+    seam, beyond = seams_around(piece.triangles[near], piece.regions[near], ~gone[near], none, none[:, 0], n)
+    corners = piece.triangles[gone]
+    stays = ~np.isin(piece.seam[:, 0] * n + piece.seam[:, 1], corners * n + corners[:, [1, 2, 0]])
+    used = np.zeros(n, bool)
+    used[piece.triangles[~gone]] = True
+    local = np.cumsum(used) - 1
+    seam, beyond = np.concatenate([piece.seam[stays], seam]), np.concatenate([piece.beyond[stays], beyond])
+    return Piece(piece.vertices[used], local[piece.triangles[~gone]], piece.regions[~gone], local[seam], beyond)
+
+
 def seams_around(triangles: Ints, regions: Ints, chosen: Bools, met: Ints, met_labels: Ints, n: int) -> tuple[Ints, Ints]:
     """Find the edges of chosen triangles beyond which there are others, and the labels there; arguments as for `taken`."""
     sides = Sides.of(triangles, n)
