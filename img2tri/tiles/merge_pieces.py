@@ -105,7 +105,7 @@ def merge(
     labels = np.unique(np.concatenate([mesh.regions, finished.regions, finished.beyond]))
     outside = territory.outside(mesh.vertices)
     reached = max(0.0, -float(territory.outside(finished.vertices).min(initial=0.0)))
-    core = (outside < -reached - CORE * territory.margin)[mesh.triangles].all(axis=1)
+    core = np.asarray((outside < -reached - CORE * territory.margin)[mesh.triangles].all(axis=1))
     band, cut = _without(mesh, core)
     attempt = Attempt(0, [], TAKEN * territory.margin)
     middle = finished.vertices[finished.triangles].mean(axis=1)
