@@ -5,11 +5,7 @@
     first_pass         what has to be known of the whole image: level, default edge length, a hash of all pixels -> the plan
     block_plan         the grid of blocks, their order in four colours, their territories; what each is meshed by
     mesh_block         the work of one task: a block is meshed with what is around it, and fitted to the pieces that are there
-    merge_pieces       that fit: where the new mesh and finished pieces agree it goes on, else there is a gap to fill
-    gap_attempts       the ways of filling a gap, from the gentlest on: how wide it is, how long edges are, what is given up
-    outline_splices    outlines joined across a gap
-    gap_triangulation  a gap triangulated, smoothed, refined
-    piece_seams        the triangles of one block, and its seam: the edges where other blocks go on
+    seams              two neighbours fitted to each other: pieces, what is merged, gaps that are filled
     piece_files        pieces on disk, whole or not there, from which an interrupted run goes on
     seam_matching      the proof that each seam edge has one partner, and from it the numbers of vertices in the whole mesh
     save_parts         the mesh in files of parts: zarr, .pvtu, .vtkhdf; and read back

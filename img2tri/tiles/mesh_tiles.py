@@ -28,10 +28,10 @@ from img2tri.tiles.block_plan import Cell, Plan, colour
 from img2tri.tiles.first_pass import decided, fingerprint, first_plan, look
 from img2tri.tiles.mesh_block import mesh_block
 from img2tri.tiles.piece_files import load_piece, write
-from img2tri.tiles.piece_seams import Piece, Sides, join_pieces
 from img2tri.tiles.pixel_source import open_source
 from img2tri.tiles.save_parts import FORMATS, Part, save_parts
 from img2tri.tiles.seam_matching import Seam, global_numbers, numbered_vertices
+from img2tri.tiles.seams.piece_seams import Piece, Sides, join_pieces
 from img2tri.triangles.smallest_tangents import smallest_angles
 
 MOST_AREA_ERROR, FEW_PIXELS = 0.01, 16  # of the whole, but of no fewer pixels, as in the certificate of a mesh in memory

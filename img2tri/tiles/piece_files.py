@@ -14,8 +14,8 @@ import numpy as np
 
 from img2tri.arrays import Ints
 from img2tri.errors import FileError
-from img2tri.tiles.piece_seams import Piece, without
 from img2tri.tiles.block_plan import Cell, Plan, colour
+from img2tri.tiles.seams.piece_seams import Piece, without
 
 ARRAYS = ("vertices", "triangles", "regions", "seam", "beyond")
 

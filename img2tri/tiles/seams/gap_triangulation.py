@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from img2tri.arrays import Bools, Floats, Ints, Points, as_rows
-from img2tri.tiles.piece_seams import SeamError, Sides
+from img2tri.tiles.seams.piece_seams import SeamError, Sides
 from img2tri.triangles.generate.constrained_delaunay import SUPER, PslgError, insert
 from img2tri.triangles.generate.pslg import Pslg
 from img2tri.triangles.generate.quality_smoothing import raise_worst_angles, smooth

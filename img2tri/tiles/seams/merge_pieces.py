@@ -14,10 +14,11 @@ import numpy as np
 import shapely
 
 from img2tri.arrays import Bools, Floats, Ints, Points, as_rows
-from img2tri.tiles.gap_attempts import EATEN, MOST_ATTEMPTS, SEGMENT_LENGTHS, WIDTHS, Attempt
-from img2tri.tiles.gap_triangulation import Gap, GapWalls, gap_filled, improved, longest_sides
-from img2tri.tiles.outline_splices import Ways, splice
-from img2tri.tiles.piece_seams import Piece, SeamError, Sides, evened, find_stubs, seams_around, taken
+from img2tri.tiles.seams.block_core import with_core, without_core
+from img2tri.tiles.seams.gap_attempts import EATEN, MOST_ATTEMPTS, SEGMENT_LENGTHS, WIDTHS, Attempt
+from img2tri.tiles.seams.gap_triangulation import Gap, GapWalls, gap_filled, improved, longest_sides
+from img2tri.tiles.seams.outline_splices import Ways, splice
+from img2tri.tiles.seams.piece_seams import Piece, SeamError, Sides, evened, find_stubs, seams_around, taken
 from img2tri.triangles.smallest_tangents import smallest_angles
 
 LOOSE_CLEARANCE = 0.66  # of the longest edge at a vertex: loose points nearer to the border are left out
@@ -106,7 +107,7 @@ def merge(
     outside = territory.outside(mesh.vertices)
     reached = max(0.0, -float(territory.outside(finished.vertices).min(initial=0.0)))
     core = np.asarray((outside < -reached - CORE * territory.margin)[mesh.triangles].all(axis=1))
-    band, cut = _without(mesh, core)
+    band, cut = without_core(mesh, core)
     attempt = Attempt(0, [], TAKEN * territory.margin)
     middle = finished.vertices[finished.triangles].mean(axis=1)
     far = territory.outside(finished.vertices)[finished.triangles].max(axis=1) > LOST * territory.margin
@@ -114,37 +115,10 @@ def merge(
         lost = attempt.near(territory.margin * np.asarray(EATEN), middle) & ~far
         both = _together(band, finished, lost, labels, territory, cut)
         try:
-            return _with_core(mesh, core, _merged(both, labels, territory, attempt, off, tolerance, min_angle)), lost
+            return with_core(mesh, core, _merged(both, labels, territory, attempt, off, tolerance, min_angle)), lost
         except SeamError as error:
             attempt, problem = attempt.raised(error.at), error
     raise problem
-
-
-def _with_core(mesh: Piece, core: Bools, piece: Piece) -> Piece:
-    """Join the core of a new mesh and what became of the rest; vertices of the new mesh stay in their order, others follow."""
-    n = len(mesh.vertices)
-    rim = np.unique(mesh.triangles[~core])
-    places, number = np.unique(np.concatenate([mesh.vertices[rim], piece.vertices]), return_inverse=True)
-    known = np.full(len(places), -1)
-    known[number[: len(rim)]] = rim
-    own = known[number[len(rim) :]]
-    own[own < 0] = n + np.arange((own < 0).sum())
-    vertices = np.concatenate([mesh.vertices, piece.vertices[own >= n]])
-    triangles = np.concatenate([mesh.triangles[core], own[piece.triangles]])
-    used = np.zeros(len(vertices), bool)
-    used[triangles] = True
-    local = np.cumsum(used) - 1
-    regions = np.concatenate([mesh.regions[core], piece.regions])
-    return Piece(vertices[used], local[triangles], regions, local[own[piece.seam]], piece.beyond)
-
-
-def _without(mesh: Piece, core: Bools) -> tuple[Piece, Ints]:
-    """Return a mesh without its core, which no other piece is near to, and the edges (k, 2) between both, the rest on their left."""
-    used, local = np.unique(mesh.triangles[~core], return_inverse=True)
-    inner = np.isin(used, mesh.triangles[core])
-    local = local.reshape(-1, 3)
-    edges, _ = Sides.of(local, len(used)).bare()
-    return Piece(mesh.vertices[used], local, mesh.regions[~core], mesh.seam, mesh.beyond), edges[inner[edges].all(axis=1)]
 
 
 def _together(mesh: Piece, finished: Piece, lost: Bools, labels: Ints, territory: Territory, cut: Ints) -> _Both:

@@ -18,7 +18,7 @@ from itertools import pairwise
 import numpy as np
 
 from img2tri.arrays import Bools, Floats, Ints, Points
-from img2tri.tiles.piece_seams import SeamError, Sides, Stubs
+from img2tri.tiles.seams.piece_seams import SeamError, Sides, Stubs
 
 REACH = 3.0  # px: how far a stub may be from the outline it belongs to, beside the tolerance
 BENT = 0.4  # segments: a vertex of the outline nearer to a stub does not shape the curve
