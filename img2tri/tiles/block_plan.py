@@ -18,7 +18,8 @@ from typing import Any
 import numpy as np
 
 from img2tri.arrays import Bools, Floats, Points
-from img2tri.tiles.seams.merge_pieces import TAKEN, Territory
+from img2tri.tiles.seams.both_meshes import Territory
+from img2tri.tiles.seams.merge_pieces import TAKEN
 from img2tri.types import Frame
 
 BLOCK_SIDE = 2048  # px, the least side of a block

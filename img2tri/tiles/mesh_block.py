@@ -19,7 +19,8 @@ from img2tri.recipes.conforming import conform, trace_outlines, wanted_sizes
 from img2tri.tiles.block_plan import SMOOTHED, Cell, Plan, colour
 from img2tri.tiles.piece_files import facts_of, load_piece, lost_name, packed, piece_path, write
 from img2tri.tiles.pixel_source import PixelSource
-from img2tri.tiles.seams.merge_pieces import Territory, merge
+from img2tri.tiles.seams.both_meshes import Territory
+from img2tri.tiles.seams.merge_pieces import merge
 from img2tri.tiles.seams.piece_seams import Piece, SeamError, join_pieces
 from img2tri.triangles.tools.topology import curve_edges
 from img2tri.types import Frame, Outlines

@@ -7,18 +7,16 @@ give way, and the gap is triangulated: the border stays, outlines are spliced, p
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
-import shapely
 
 from img2tri.arrays import Bools, Floats, Ints, Points, as_rows
 from img2tri.tiles.seams.block_core import with_core, without_core
+from img2tri.tiles.seams.both_meshes import Both, Territory, together
 from img2tri.tiles.seams.gap_attempts import EATEN, MOST_ATTEMPTS, SEGMENT_LENGTHS, WIDTHS, Attempt
 from img2tri.tiles.seams.gap_triangulation import Gap, GapWalls, gap_filled, improved, longest_sides
 from img2tri.tiles.seams.outline_splices import Ways, splice
-from img2tri.tiles.seams.piece_seams import Piece, SeamError, Sides, evened, find_stubs, seams_around, taken
+from img2tri.tiles.seams.piece_seams import Piece, SeamError, Sides, evened, find_stubs, taken
 from img2tri.triangles.smallest_tangents import smallest_angles
 
 LOOSE_CLEARANCE = 0.66  # of the longest edge at a vertex: loose points nearer to the border are left out
@@ -26,58 +24,6 @@ SAMPLES = 4  # places along each edge of the border, to measure distances to
 # Of the margin: from where on stubs, walls and triangles of the gap do not count. It is open at its ends, beyond what is taken.
 WALLED, STUBS, FILLED, MET, LOST, TAKEN = 0.85, 0.8, 0.7, 0.6, 0.5, 0.35
 CORE = 1.5  # margins: a triangle of the new mesh farther from finished pieces and borders of its block stays as it is
-
-
-@dataclass(frozen=True)
-class Territory:
-    """Where a piece may take triangles.
-
-    Attributes
-    ----------
-    outside
-        Function of places (k,) that returns how far they lie outside of the piece's own block; within, less than 0: how far from where
-        it meets others, minus infinity if it meets none.
-    takes
-        Function of places (k,): whether a triangle whose middle lies there is the piece's, if no finished piece covers it.
-    margin
-        How far outside the new mesh is looked at.
-    """
-
-    outside: Callable[[Points], Floats]
-    takes: Callable[[Points], Bools]
-    margin: float
-
-
-@dataclass(frozen=True, eq=False)
-class _Both:
-    """New mesh and finished pieces in the same numbers: vertices, triangles with codes of their regions, and the border of the old ones.
-
-    `border` has the finished pieces on its left, `own` and `beyond` are the codes of the regions on both sides;
-    `fresh` are those edges of it beyond which finished triangles were given up. `cut` are the edges towards the core of the new mesh.
-    """
-
-    z: Points
-    outside: Floats
-    new: Ints
-    new_codes: Ints
-    old: Ints
-    border: Ints
-    own: Ints
-    beyond: Ints
-    fresh: Bools
-    cut: Ints
-
-    def covered(self, places: Points) -> Bools:
-        """Tell which places lie in finished pieces, or on their border."""
-        result = np.zeros(len(places), bool)
-        if self.tree is not None:
-            result[np.unique(self.tree.query(shapely.points(places.real, places.imag), predicate="intersects")[0])] = True
-        return result
-
-    @cached_property
-    def tree(self) -> shapely.STRtree | None:
-        """The finished triangles by place."""
-        return shapely.STRtree(shapely.polygons(as_rows(self.z[self.old.ravel()]).reshape(-1, 3, 2))) if len(self.old) else None
 
 
 def merge(
@@ -113,7 +59,7 @@ def merge(
     far = territory.outside(finished.vertices)[finished.triangles].max(axis=1) > LOST * territory.margin
     for _ in range(MOST_ATTEMPTS):
         lost = attempt.near(territory.margin * np.asarray(EATEN), middle) & ~far
-        both = _together(band, finished, lost, labels, territory, cut)
+        both = together(band, finished, lost, labels, territory, cut)
         try:
             return with_core(mesh, core, _merged(both, labels, territory, attempt, off, tolerance, min_angle)), lost
         except SeamError as error:
@@ -121,36 +67,8 @@ def merge(
     raise problem
 
 
-def _together(mesh: Piece, finished: Piece, lost: Bools, labels: Ints, territory: Territory, cut: Ints) -> _Both:
-    """Bring both into the same numbers; only what is near counts, and of the finished triangles those not given up."""
-    z, number = np.unique(np.concatenate([mesh.vertices, finished.vertices]), return_inverse=True)
-    n, margin = len(z), territory.margin
-    new, old = number[mesh.triangles], number[finished.triangles + len(mesh.vertices)]
-    seam, beyond_seam = number[finished.seam + len(mesh.vertices)], finished.beyond
-    before = seam[:, 0] * n + seam[:, 1]
-    if lost.any():
-        seam, beyond_seam = seams_around(old, finished.regions, ~lost, seam, beyond_seam, n)
-    outside = territory.outside(z)
-    near = territory.outside(z[new].mean(axis=1)) < margin
-    new, codes = new[near], np.searchsorted(labels, mesh.regions[near]) + 1
-    near = (territory.outside(z[old].mean(axis=1)) < 2 * margin) & ~lost
-    old, old_codes = old[near], np.searchsorted(labels, finished.regions[near]) + 1
-    border, owner = Sides.of(old, n).bare()
-    true = (outside[border] < margin).all(axis=1)
-    border, owner = border[true], owner[true]
-    beyond = np.zeros(len(border), np.int64)
-    keys, wanted = seam[:, 0] * n + seam[:, 1], border[:, 0] * n + border[:, 1]
-    if len(keys):
-        order = np.argsort(keys)
-        at = order[np.minimum(np.searchsorted(keys, wanted, sorter=order), len(keys) - 1)]
-        goes_on = keys[at] == wanted
-        beyond[goes_on] = np.searchsorted(labels, beyond_seam[at[goes_on]]) + 1
-    fresh = (beyond > 0) & ~np.isin(wanted, before)
-    return _Both(z, outside, new, codes, old, border, old_codes[owner], beyond, fresh, number[cut])
-
-
 def _merged(
-    both: _Both,
+    both: Both,
     labels: Ints,
     territory: Territory,
     attempt: Attempt,
@@ -194,7 +112,7 @@ def _merged(
 
 
 def _check_outlines(
-    z: Points, triangles: Ints, code: Ints, both: _Both, territory: Territory, off: Callable[[Points, Ints], Floats], tolerance: float
+    z: Points, triangles: Ints, code: Ints, both: Both, territory: Territory, off: Callable[[Points, Ints], Floats], tolerance: float
 ) -> None:
     """Refuse edges along new outlines that are off those of the image, unless the new mesh is off there by itself."""
     edges = _outline_edges(triangles, code, len(z))
@@ -230,7 +148,7 @@ def _met(border: Ints, triangles: Ints, n: int) -> Bools:
     return np.isin(border[:, 0] * n + border[:, 1], triangles[:, [1, 2, 0]] * n + triangles)
 
 
-def _agreed(both: _Both, sides: Sides) -> Bools:
+def _agreed(both: Both, sides: Sides) -> Bools:
     """Tell which border edges the new mesh has too, with a triangle of the right region beyond."""
     n, low, high = len(both.z), both.border.min(axis=1), both.border.max(axis=1)
     keys = sides.low * n + sides.high
@@ -242,7 +160,7 @@ def _agreed(both: _Both, sides: Sides) -> Bools:
     return np.asarray((keys[at] == low * n + high) & (there == both.beyond))
 
 
-def _clear(both: _Both, rim: Bools, attempt: Attempt) -> Bools:
+def _clear(both: Both, rim: Bools, attempt: Attempt) -> Bools:
     """Tell which new triangles have no vertex in finished pieces, nor too near to a border they do not fit."""
     z, new = both.z, both.new
     own = np.unique(new)
@@ -255,7 +173,7 @@ def _clear(both: _Both, rim: Bools, attempt: Attempt) -> Bools:
     return np.asarray(~gone[new].any(axis=1))
 
 
-def _distance(both: _Both, rim: Bools, places: Points) -> Floats:
+def _distance(both: Both, rim: Bools, places: Points) -> Floats:
     """Distance of places from the edges of a rim, measured to samples."""
     from scipy.spatial import cKDTree
 
@@ -267,7 +185,7 @@ def _distance(both: _Both, rim: Bools, places: Points) -> Floats:
 
 
 def _gap(
-    both: _Both, sides: Sides, stays: Bools, covered: Bools, rim: Bools, territory: Territory, attempt: Attempt, tolerance: float
+    both: Both, sides: Sides, stays: Bools, covered: Bools, rim: Bools, territory: Territory, attempt: Attempt, tolerance: float
 ) -> Gap:
     """Find the walls of the gap, and the points in it."""
     z, n, margin = both.z, len(both.z), territory.margin
