@@ -11,7 +11,7 @@ from img2tri.arrays import Bools, Ints
 from img2tri.tiles.seams.piece_seams import Piece, Sides
 
 
-def with_core(mesh: Piece, core: Bools, piece: Piece) -> Piece:
+def core_put_back(mesh: Piece, core: Bools, piece: Piece) -> Piece:
     """Join the core of a new mesh and what became of the rest; vertices of the new mesh stay in their order, others follow."""
     n = len(mesh.vertices)
     rim = np.unique(mesh.triangles[~core])
@@ -29,7 +29,7 @@ def with_core(mesh: Piece, core: Bools, piece: Piece) -> Piece:
     return Piece(vertices[used], local[triangles], regions, local[own[piece.seam]], piece.beyond)
 
 
-def without_core(mesh: Piece, core: Bools) -> tuple[Piece, Ints]:
+def core_set_aside(mesh: Piece, core: Bools) -> tuple[Piece, Ints]:
     """Return a mesh without its core, which no other piece is near to, and the edges (k, 2) between both, the rest on their left."""
     used, local = np.unique(mesh.triangles[~core], return_inverse=True)
     inner = np.isin(used, mesh.triangles[core])

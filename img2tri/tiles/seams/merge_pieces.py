@@ -11,7 +11,7 @@ from collections.abc import Callable
 import numpy as np
 
 from img2tri.arrays import Bools, Floats, Ints, Points, as_rows
-from img2tri.tiles.seams.block_core import with_core, without_core
+from img2tri.tiles.seams.block_core import core_put_back, core_set_aside
 from img2tri.tiles.seams.both_meshes import Both, Territory, together
 from img2tri.tiles.seams.gap_attempts import EATEN, MOST_ATTEMPTS, SEGMENT_LENGTHS, WIDTHS, Attempt
 from img2tri.tiles.seams.gap_triangulation import Gap, GapWalls, gap_filled, improved, longest_sides
@@ -53,7 +53,7 @@ def merge(
     outside = territory.outside(mesh.vertices)
     reached = max(0.0, -float(territory.outside(finished.vertices).min(initial=0.0)))
     core = np.asarray((outside < -reached - CORE * territory.margin)[mesh.triangles].all(axis=1))
-    band, cut = without_core(mesh, core)
+    band, cut = core_set_aside(mesh, core)
     attempt = Attempt(0, [], TAKEN * territory.margin)
     middle = finished.vertices[finished.triangles].mean(axis=1)
     far = territory.outside(finished.vertices)[finished.triangles].max(axis=1) > LOST * territory.margin
@@ -61,7 +61,7 @@ def merge(
         lost = attempt.near(territory.margin * np.asarray(EATEN), middle) & ~far
         both = together(band, finished, lost, labels, territory, cut)
         try:
-            return with_core(mesh, core, _merged(both, labels, territory, attempt, off, tolerance, min_angle)), lost
+            return core_put_back(mesh, core, _merged(both, labels, territory, attempt, off, tolerance, min_angle)), lost
         except SeamError as error:
             attempt, problem = attempt.raised(error.at), error
     raise problem
