@@ -1,7 +1,7 @@
 """Where an outline has a corner, and where exactly it is.
 
 From every crossing the outline is followed both ways along the longest straight line that passes through the bounds of its crossings: a
-digital straight segment (Klette and Rosenfeld, "Digital straightness: a review", 2004, DOI 10.1016/j.dam.2002.12.001), fitted by least
+digital straight segment (Klette and Rosenfeld, "Digital straightness: a review", Discrete Applied Mathematics 139, 2004), fitted by least
 squares. Where two long segments meet at an angle that no round outline of pixels could have, there is a corner, at the place where
 their lines meet: as exact as the segments are long, and not where a smooth curve would pass, up to 0.7 px away.
 

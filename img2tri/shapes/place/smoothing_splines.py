@@ -8,8 +8,8 @@ not.
 
 `SmoothingSpline` takes the third derivative of x and y. Wide ones shrink circles that way, and open them at the ends of a chain.
 `CurvatureSpline` looks for the curve along the normals of a narrow one, and counts only the part of the third derivative across the
-curve, which is how curvature varies along the arc (Moreton and Sequin, "Functional optimization for fair surface design", 1992, DOI
-10.1145/133994.134035): circles cost nothing.
+curve, which is how curvature varies along the arc (Moreton and Sequin, "Functional optimization for fair surface design", SIGGRAPH
+1992): circles cost nothing.
 
 Nodes do not count: a chain goes on to its ends as the rest of it has it. Arc length is measured along the points smoothed a little: the
 steps of pixels make a line longer, by up to the root of two, and by how much depends on its direction.

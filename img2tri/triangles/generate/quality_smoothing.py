@@ -18,9 +18,9 @@ Numer. Methods Eng. 40, 1997, https://doi.org/10.1002/(SICI)1097-0207(19971115)4
 operations for all vertices.
 
 Triangles that ask for a better shape of their own are the idea of GETMe smoothing (D. Vartziotis, T. Athanasiadis, I. Goudas and J. Wipper,
-Mesh smoothing using the geometric element transformation method, Comput. Methods Appl. Mech. Eng. 197, 2008,
-https://doi.org/10.1016/j.cma.2008.02.028); the weights make it a descent. Laplacian, centroidal (CVT) and optimal-Delaunay (ODT) smoothing
-were tried in its place: worst angles of 41, 40 and 37 degrees where this reaches 41 to 44.
+Mesh smoothing using the geometric element transformation method, Comput. Methods Appl. Mech. Eng. 197, 2008); the weights make it a
+descent. Laplacian, centroidal (CVT) and optimal-Delaunay (ODT) smoothing were tried in its place: worst angles of 41, 40 and 37 degrees
+where this reaches 41 to 44.
 """
 
 from __future__ import annotations
