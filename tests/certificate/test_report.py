@@ -272,6 +272,14 @@ def test_two_halves_that_are_swapped():
     assert not damaged(mesh, regions=3 - mesh.regions).report.kept
 
 
+def test_pixels_are_looked_at_where_outlines_follow_them():
+    smooth, pixel = (mesh_image(specimens.disc(40, 12.3), edge_length=4, outline=outline) for outline in ("smooth", "pixel"))
+    assert sorted(smooth.origin.pixels.tolist()) == sorted(pixel.origin.pixels.tolist())
+    assert pixel.report.wrong_pixels == 0
+    apart = np.hypot(*(middles(pixel) - 20).T) > 10
+    assert damaged(pixel, triangles=pixel.triangles[~apart], regions=pixel.regions[~apart]).report.wrong_pixels > 50
+
+
 def test_a_triangle_that_is_turned_over(shapes):
     triangles = shapes.triangles.copy()
     triangles[3] = triangles[3, ::-1]

@@ -151,9 +151,8 @@ def lay_out(crack_edges: CrackEdges, frame: Frame) -> DualEdges:
     indices[starts[1:][traced.closed] - 1] = traced.starts[:-1][traced.closed]
 
     a, b = corner(tail), corner(head)
-    # A quarter turn to the left, as long as the dual edge: across a vertical crack edge lies the width of a pixel.
     width, height = np.abs(np.diff(frame.plane([0, 1], [0, 1]), axis=0)[0])
-    vector = 1j * (np.sign((b - a).real) * height + 1j * np.sign((b - a).imag) * width)
+    vector = _across(b - a, complex(width, height))
     vector[crack_edges.on_frame[traced.order]] = 0
     r, c = np.divmod(nodes, w + 1)
     inside = (r > 0) & (r < h) & (c > 0) & (c < w)
@@ -171,6 +170,11 @@ def lay_out(crack_edges: CrackEdges, frame: Frame) -> DualEdges:
     )
 
 
+def _across(along: Points, pixel: complex) -> Points:
+    """Return the dual edges of crack edges: a quarter turn to the left; across a vertical one lies the width of a pixel."""
+    return np.asarray(1j * (np.sign(along.real) * pixel.imag + 1j * np.sign(along.imag) * pixel.real))
+
+
 def cut_chains(dual_edges: DualEdges, crossings: Ints, frame: Frame) -> DualEdges:
     """Cut chains after some crossings: the corners of pixels there become nodes."""
     successor = dual_edges.crack_edges.successor.copy()
@@ -180,8 +184,9 @@ def cut_chains(dual_edges: DualEdges, crossings: Ints, frame: Frame) -> DualEdge
 
 def pixels_beside(dual_edges: DualEdges) -> tuple[Floats, Ints]:
     """Return the centres (k, 2) of the pixels on both sides of each crack edge inside the image, and their region numbers (k,)."""
-    inner = np.flatnonzero(dual_edges.slides)
-    middle, half, edge = dual_edges.middle[inner], dual_edges.vector[inner] / 2, dual_edges.crossed[inner]
+    inner = np.flatnonzero(~dual_edges.crack_edges.on_frame[dual_edges.crossed])  # also where no crossing may slide
+    middle, edge = dual_edges.middle[inner], dual_edges.crossed[inner]
+    half = _across(dual_edges.corner_after[inner] - middle, dual_edges.pixel) / 2
     regions = np.concatenate([dual_edges.crack_edges.left[edge], dual_edges.crack_edges.right[edge]])
     return as_rows(np.concatenate([middle + half, middle - half])), regions
 

@@ -32,18 +32,21 @@ def refine_locally(
         return vertices, triangles, codes
     patch, cause = np.zeros(len(triangles), bool), bad
     for rings in PATCH_RINGS:
-        patch = patch | patch_around(cause, triangles, len(vertices), rings)[0]
+        grown = patch | patch_around(cause, triangles, len(vertices), rings)[0]
+        if np.array_equal(grown, patch):
+            return None
+        patch = grown
         inside, local = np.unique(triangles[patch], return_inverse=True)
         rim, may_split = _patch_constraints(vertices[inside], inside, local.reshape(-1, 3), codes[patch], constraints, n_outline)
         made = ruppert(as_rows(rim.points), rim.segments, rim.left, rim.right, min_angle, SHORTEST_EDGE * rim.lengths.min())
         split = (np.bincount(made.origin) > 1) & ~may_split
         if not split.any():
             break
-        if patch.all():
-            return None
         ends = np.zeros(len(vertices), bool)
         ends[inside[rim.segments[split]]] = True
         cause = touching(triangles, ends)
+    else:
+        return None  # the patch is all that hangs together with it, and still a segment was split that must stay whole
     places = as_complex(made.vertices)
     free = np.ones(len(places), bool)
     free[made.segments] = False
