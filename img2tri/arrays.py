@@ -263,3 +263,16 @@ def label_changes(flat: NDArray[Any], shift: int) -> Ints:
     per_word = 8 // size
     candidates = np.concatenate([(differ[:, None] * per_word + np.arange(per_word)).reshape(-1), np.arange(words * per_word, n)])
     return np.asarray(candidates[flat[candidates] != flat[candidates + shift]])
+
+
+def neighbour_changes(values: NDArray[Any]) -> tuple[Ints, Ints]:
+    """Return the flat places of the pixels of an image (h, w) that differ from the one right of them, and from the one below.
+
+    Examples
+    --------
+    >>> [places.tolist() for places in neighbour_changes(np.array([[1, 1, 2], [1, 3, 2]]))]
+    [[1, 3, 4], [1]]
+    """
+    flat, w = np.ascontiguousarray(values).reshape(-1), values.shape[1]
+    right = label_changes(flat, 1)
+    return right[right % w != w - 1], label_changes(flat, w)

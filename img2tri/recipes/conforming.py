@@ -67,7 +67,9 @@ def trace_outlines(
     periodic
         "x", "y" or "xy": the points on these opposite sides are put at the same places; see `img2tri.shapes.periodic`.
     """
-    crack_edges = find_crack_edges(zones.labels, background=zones.background, upward=frame.upward, connectivity=connectivity)
+    crack_edges = find_crack_edges(
+        zones.labels, background=zones.background, upward=frame.upward, connectivity=connectivity, changes=zones.changes
+    )
     crack_edges = cut_alike(crack_edges, periodic)
     if outline == "pixel":
         return place_on_pixel_sides(crack_edges, frame)

@@ -9,12 +9,9 @@ grains and phases.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from img2tri.arrays import Ints, label_changes
 from img2tri.errors import ConfettiWarning, ConnectivityWarning, Img2triWarning, SizeWarning
 from img2tri.raster.labels.connected_components import find_components
 from img2tri.raster.labels.label_numbers import distinct
@@ -45,25 +42,24 @@ def early_warnings(found: Segmentation, *, connectivity: int, asked: float | Non
     >>> [str(w)[:60] for w in early_warnings(Segmentation(diagonal, 0), connectivity=4, asked=None)]
     ['label 1 is 30 pieces that touch at corners of pixels only; c']
     """
-    labels = np.ascontiguousarray(found.labels)
-    yield from _far_more(labels, found.background, USUALLY_ASKED if asked is None else asked)
-    yield from _in_pieces(labels, found.background, connectivity)
-    if labels.dtype != bool:
-        yield from _only_edges(labels)
+    yield from _far_more(found, USUALLY_ASKED if asked is None else asked)
+    yield from _in_pieces(found, connectivity)
+    if found.labels.dtype != bool:
+        yield from _only_edges(found)
 
 
-def predicted_triangles(labels: NDArray[Any], background: int | None, asked: float) -> float:
+def predicted_triangles(found: Segmentation, asked: float) -> float:
     """Return about how many triangles a label map takes."""
-    flat, sides = labels.reshape(-1), 0.0
-    for at, step in _changes(labels):
+    flat, sides, background = found.labels.reshape(-1), 0.0, found.background
+    for at, step in zip(found.changes, (1, found.labels.shape[1]), strict=True):
         one, other = flat[at], flat[at + step]
         single = 0 if background is None else np.count_nonzero((one == background) | (other == background))
         sides += ONE_SIDED * single + TWO_SIDED * (len(at) - single)
     return asked + sides
 
 
-def _far_more(labels: NDArray[Any], background: int | None, asked: float) -> Iterator[Img2triWarning]:
-    count = predicted_triangles(labels, background, asked)
+def _far_more(found: Segmentation, asked: float) -> Iterator[Img2triWarning]:
+    count = predicted_triangles(found, asked)
     if count > max(FAR_MORE * asked, MANY_TRIANGLES):
         yield SizeWarning(
             f"some {_rounded(count):,} triangles are to be expected, where {_rounded(asked):,} would fill the image, as outlines have so "
@@ -71,8 +67,8 @@ def _far_more(labels: NDArray[Any], background: int | None, asked: float) -> Ite
         )
 
 
-def _in_pieces(labels: NDArray[Any], background: int | None, connectivity: int) -> Iterator[Img2triWarning]:
-    (at, _), (_, w) = _changes(labels)
+def _in_pieces(found: Segmentation, connectivity: int) -> Iterator[Img2triWarning]:
+    labels, background, at, w = found.labels, found.background, found.changes[0], found.labels.shape[1]
     # a b    at, and the pixel right of it; a checkerboard has d = a and c = b
     # c d
     at, flat = at[at < labels.size - w], labels.reshape(-1)
@@ -91,20 +87,12 @@ def _in_pieces(labels: NDArray[Any], background: int | None, connectivity: int) 
         )
 
 
-def _changes(labels: NDArray[Any]) -> tuple[tuple[Ints, int], tuple[Ints, int]]:
-    """Flat places of the pixels that differ from the one right of them, and from the one below, each with the step to that."""
-    flat, w = labels.reshape(-1), labels.shape[1]
-    right = label_changes(flat, 1)
-    return (right[right % w != w - 1], 1), (label_changes(flat, w), w)
-
-
-def _only_edges(labels: NDArray[Any]) -> Iterator[Img2triWarning]:
+def _only_edges(found: Segmentation) -> Iterator[Img2triWarning]:
+    labels, (right, below) = found.labels, found.changes
     inside = np.zeros(labels.shape, bool)
-    middle = labels[1:-1, 1:-1]
-    if middle.size:
-        inside[1:-1, 1:-1] = (
-            (middle == labels[:-2, 1:-1]) & (middle == labels[2:, 1:-1]) & (middle == labels[1:-1, :-2]) & (middle == labels[1:-1, 2:])
-        )
+    inside[1:-1, 1:-1] = True
+    for at, step in ((right, 1), (below, labels.shape[1])):
+        inside.reshape(-1)[at] = inside.reshape(-1)[at + step] = False
     every = distinct(labels)
     solid = distinct(labels[inside]) if inside.any() else every[:0]
     if len(every) >= MANY_REGIONS and 2 <= len(solid) < len(every) / 2:

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from img2tri.arrays import Bools, Floats
+from img2tri.arrays import Bools, Floats, blocks
 from img2tri.errors import ImageError, ParameterError, finite
 from img2tri.raster.in_memory.array_checks import Pixels, pixels
 
@@ -111,8 +111,11 @@ def _above(values: Pixels, level: float) -> Bools:
 
 def two_valued(values: Pixels) -> bool:
     """Tell whether an image has at most two different values."""
-    least, greatest = values.min(), values.max()
-    return bool(((values == least) | (values == greatest)).all())
+    if values.dtype == bool:
+        return True
+    flat, least, greatest = values.reshape(-1), values.min(), values.max()
+    parts = (flat[part] for part in blocks(flat.size))
+    return all(((part == least) | (part == greatest)).all() for part in parts)
 
 
 def _middle(values: Pixels) -> tuple[Level, Bools]:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from img2tri.arrays import Bools
+from img2tri.arrays import Bools, Ints, neighbour_changes
 from img2tri.errors import ImageError, ParameterError
 from img2tri.raster.labels.absorbed_labels import absorb_labels, thin_separators
 from img2tri.raster.labels.colour_quantization import label_by_colours
@@ -62,6 +63,11 @@ class Segmentation:
     level: float | tuple[float, ...] | None = None
     notes: tuple[str, ...] = ()
     counted: dict[str, int] = field(default_factory=dict)
+
+    @cached_property
+    def changes(self) -> tuple[Ints, Ints]:
+        """Where labels change, see `neighbour_changes`: one look at all pixels, for all that follows their boundaries."""
+        return neighbour_changes(self.labels)
 
 
 def segment(

@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from img2tri.arrays import Bools, Ints, label_changes
+from img2tri.arrays import Bools, Ints, neighbour_changes
 
 NODE = -1
 
@@ -59,7 +59,14 @@ class CrackEdges:
     labels: Ints
 
 
-def find_crack_edges(labels: NDArray[Any], *, background: int | None = 0, upward: bool = True, connectivity: int = 4) -> CrackEdges:
+def find_crack_edges(
+    labels: NDArray[Any],
+    *,
+    background: int | None = 0,
+    upward: bool = True,
+    connectivity: int = 4,
+    changes: tuple[Ints, Ints] | None = None,
+) -> CrackEdges:
     """Find the crack edges between the regions of a label map, and how they follow each other.
 
     Parameters
@@ -73,6 +80,8 @@ def find_crack_edges(labels: NDArray[Any], *, background: int | None = 0, upward
     connectivity
         A checkerboard of two regions joins one of them: with 4 the lower label, the background being the lowest, so that
         a region hangs together through sides of pixels; with 8 the higher one, so that diagonal pixels hang together.
+    changes
+        The `neighbour_changes` of the labels, where they are known already.
 
     Examples
     --------
@@ -85,8 +94,7 @@ def find_crack_edges(labels: NDArray[Any], *, background: int | None = 0, upward
     """
     h, w = labels.shape
     flat = np.ascontiguousarray(labels).reshape(-1)
-    across, down = label_changes(flat, 1), label_changes(flat, w)
-    across = across[across % w != w - 1]
+    across, down = neighbour_changes(labels) if changes is None else changes
     west_north = np.concatenate([across, down])
     east_south = np.concatenate([across + 1, down + w])
     rim, rim_tail, rim_head, rim_facing = _frame_edges(h, w)

@@ -55,7 +55,7 @@ def test_predictions_are_of_the_right_size():
     rng = np.random.default_rng(0)
     for image in (rng.random((80, 80)) < 0.5, rng.integers(0, 5, (50, 50)), drawn_images.clouds(150, rng, 2) > 0.5):
         count = len(mesh_image(image, labels=True if image.dtype != bool else None).triangles)
-        assert count / 3 < predicted_triangles(image, 0, 2000) < 3 * count
+        assert count / 3 < predicted_triangles(Segmentation(image, 0), 2000) < 3 * count
 
 
 def test_colours_in_between_are_told():
