@@ -98,43 +98,62 @@ class ChainEnds:
 def widest_fitting_spline(s: BoundedChains) -> tuple[Floats, ChainEnds]:
     """Return the shift of each point (n,) along its axis onto the smoothing spline of the widest scale that fits, and where chains lead."""
     shift, level = np.zeros((len(NARROW + WIDE) + 1, len(s.points))), np.zeros(len(s.points), np.int64)
-    k = 0
+    k, before = 0, np.zeros(len(s.chains.rings), bool)
     ends = _unsmoothed_ends(s)
     size, rings = np.diff(s.chains.starts), s.chains.rings
     for scales, least in ((NARROW, SHORTEST_NARROW), (WIDE, SHORTEST_WIDE)):
         chosen = (size > np.where(rings, RING_SCALES * scales[0], least)) & s.movable
         if not chosen.any():
             break
-        line = PaddedChains(s.chains, chosen, max(PADDING, math.ceil(3 * min(BEND * scales[-1], MOST_BEND)) + 2))
-        points = line.points(s.points)
-        narrow = SmoothingSpline(line, points)
+        if (chosen != before).any():
+            # Where both groups of scales are for the same chains, these are laid out once, with room for the wider one.
+            both = np.array_equal(chosen, (size > np.where(rings, RING_SCALES * WIDE[0], SHORTEST_WIDE)) & s.movable)
+            line = PaddedChains(s.chains, chosen, max(PADDING, _reach((WIDE if both else scales)[-1])))
+            narrow = SmoothingSpline(line, line.points(s.points))
+            before = chosen
+            # Where on the line the two ends of each open chain are.
+            node, opened = np.flatnonzero(line.node).reshape(-1, 2), np.flatnonzero(chosen & ~rings)
+            at, own, crossing = line.source, line.source[line.own], ~line.node
+            axis, low, high, misfit = line.sign * s.axis[at], s.low[at], s.high[at], MISFIT * s.slack[at] * np.abs(s.axis[at])
         spline = narrow if scales is NARROW else CurvatureSpline(narrow, NARROW[-1])
-        # Where on the line the two ends of each open chain are.
-        node, opened = np.flatnonzero(line.node).reshape(-1, 2), np.flatnonzero(chosen & ~rings)
-        at, own = line.source, line.source[line.own]
         for scale in scales:
             off, direction = spline.smoothed(scale)
             # Slide to the tangent of the spline.
-            axis, low, high = line.sign * s.axis[at], s.low[at], s.high[at]
             across = cross(axis, direction)
             steep = np.abs(across) > 1e-9
             t = np.divide(cross(off, direction), across, out=np.zeros(len(at)), where=steep)[line.original]
+            bounded = np.clip(t, low, high)
             # How far bounds are missed counts across the spline: along dual edges that run nearly as it does, it says little.
-            missed = np.abs((t - np.clip(t, low, high)) * across) > MISFIT * s.slack[at] * np.abs(axis)
-            fits = farther_than(line, narrow.steps, missed & ~line.node, WINDOW * scale)
+            miss = (t - bounded) * across
+            fits = farther_than(line, narrow.steps, (np.abs(miss) > misfit) & crossing, WINDOW * scale)
             fits &= ~line.ring | (size[np.flatnonzero(chosen)[line.chain]] > RING_SCALES * scale)
+            bent = fits & crossing
             for _ in range(BENDS):
-                miss = np.where(fits & ~line.node, (t - np.clip(t, low, high)) * across, 0)
-                t -= np.divide(fade_out(line, miss, min(BEND * scale, MOST_BEND)), across, out=np.zeros(len(at)), where=steep)
+                miss *= bent
+                if not miss.any():
+                    break
+                t -= np.divide(fade_out(line, miss, _bend(scale)), across, out=np.zeros(len(at)), where=steep)
+                bounded = np.clip(t, low, high)
+                miss = (t - bounded) * across
             k += 1
-            shift[k, own] = np.where(line.node & (scale < FREE_ENDS), 0, np.clip(t, low, high))[line.own]
+            shift[k, own] = np.where(line.node & (scale < FREE_ENDS), 0, bounded)[line.own]
             level[own[fits[line.own]]] = k
             chain, end = np.nonzero(fits[node])
             there, of = node[chain, end], opened[chain]
-            ends.place[of, end] = (points + off)[there]
+            ends.place[of, end] = (narrow.points + off)[there]
             ends.direction[of, end] = direction[there]
             ends.scale[of, end] = scale
     return _blend(shift, level, s), ends
+
+
+def _bend(scale: float) -> float:
+    """How far to either side a spline of this scale is bent towards a bound it misses, in places."""
+    return min(BEND * scale, MOST_BEND)
+
+
+def _reach(scale: float) -> int:
+    """How much padding bending takes."""
+    return math.ceil(3 * _bend(scale)) + 2
 
 
 def _unsmoothed_ends(s: BoundedChains) -> ChainEnds:

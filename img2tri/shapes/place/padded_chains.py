@@ -45,7 +45,8 @@ class PaddedChains:
         which, place = runs(length)
         place -= padding
         begin = np.arange(len(which)) - place
-        self.own = (place >= 0) & (place < (length - 2 * padding)[which])
+        self._before, self._after = -place, place - (length - 2 * padding - 1)[which]
+        self.own = self.within(0)
         turns, rest, out = np.zeros_like(place), place.copy(), np.flatnonzero(~self.own)
         turns[out], rest[out] = np.divmod(place[out], (np.where(ring, 1, 2) * steps)[which[out]])
         turned = rest > steps[which]
@@ -60,6 +61,10 @@ class PaddedChains:
         self._first, self._last = indices[first[which]], indices[first[which] + steps[which]]
         self._from_first = np.where(ring[which], 0.0, -2.0 * turns)
         self._from_last = np.where(ring[which], 0.0, 2.0 * turns + 2.0 * turned)
+
+    def within(self, reach: int) -> Bools:
+        """Tell which places (k,) are own ones, or at most so many places from those of their chain."""
+        return np.asarray((self._before <= reach) & (self._after <= reach))
 
     def points(self, z: Points) -> Points:
         """Lay points out on the line, (n,) to (k,)."""

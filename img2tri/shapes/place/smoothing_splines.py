@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from img2tri.arrays import Bools, Floats, Ints, Points
+from img2tri.arrays import Bools, Floats, Ints, Points, as_complex, as_rows
 from img2tri.shapes.place.padded_chains import PaddedChains, convolve
 
 WIDTH = 0.4775  # of the scale: waves three scales long are left with half of their height
@@ -48,13 +48,14 @@ class SmoothingSpline:
         line, points
             Chains with a padding of `PADDING` places or more, and (k,) its points, from `PaddedChains.points`.
         """
-        self.line, self.points = line, points
+        self.line, self.points, self.numbering = line, points, _Numbering(line)
         self.steps = np.maximum(np.abs(np.diff(convolve(points, _gaussian(ARC_BLUR)))), LEAST_STEP)
-        places, factors = _third_derivatives(line, self.steps)
-        # Factors add up to 0: places are taken from the first of four, not from afar, for the sake of rounding.
-        third = (factors * (points[places] - points[places[0]])).sum(axis=0)
-        self._equations = _Equations(line, self.steps, places, factors)
-        self._pull = -self._equations.transposed(np.stack([third.real, third.imag], axis=1))
+        self._known: dict[float, tuple[Points, Points]] = {}
+        near = self.numbering.near
+        steps, z = self.steps[near[:-1]], points[near]
+        factors = self.numbering.third_derivatives(steps)
+        self._equations = _Equations(self.numbering, steps, factors)
+        self._pull = -self._equations.transposed(_rows(factors, np.stack([z.real, z.imag])))
 
     def smoothed(self, scale: float) -> tuple[Points, Points]:
         """Smooth the chains along their arc.
@@ -71,11 +72,14 @@ class SmoothingSpline:
         direction : (k,) complex
             The unit direction the curve goes on in.
         """
-        # The curve is S points = (S + stiffness D' D) curve; what is solved for is how far it is off the points.
-        stiffness = (WIDTH * scale) ** 6
-        found = self._equations.solved(stiffness, stiffness * self._pull)
-        off: Points = self.line.sign * (found[:, 0] + 1j * found[:, 1])[self._equations.unknown]
-        return off, directions(self.line, self.points + off)
+        if scale not in self._known:
+            # The curve is S points = (S + stiffness D' D) curve; what is solved for is how far it is off the points.
+            stiffness = (WIDTH * scale) ** 6
+            found = self._equations.solved(stiffness, stiffness * self._pull)
+            off = as_complex(np.ascontiguousarray(found.T))[self.numbering.unknown]
+            as_rows(off)[:] *= self.line.sign[:, None]
+            self._known[scale] = off, directions(self.line, self.points + off)
+        return self._known[scale]
 
 
 class CurvatureSpline:
@@ -83,96 +87,158 @@ class CurvatureSpline:
 
     def __init__(self, narrow: SmoothingSpline, scale: float) -> None:
         """Prepare what does not depend on the scale; `scale` is that of the narrow spline, in px."""
-        self._line, self._points = narrow.line, narrow.points
+        self._line, self._points, self._numbering = narrow.line, narrow.points, narrow.numbering
         off, direction = narrow.smoothed(scale)
         self._base, self._normal = self._points + off, 1j * direction
-        steps = np.maximum(np.abs(np.diff(self._base)), LEAST_STEP)
-        places, factors = _third_derivatives(self._line, steps)
-        across = self._normal[places[1]] + self._normal[places[2]]
+        near = self._numbering.near
+        base, normal = self._base[near], self._normal[near]
+        steps = np.maximum(np.abs(np.diff(base)), LEAST_STEP)
+        factors = self._numbering.third_derivatives(steps)
+        across = normal[1:-2] + normal[2:-1]
         across /= np.maximum(np.abs(across), 1e-12)
-        third = (factors * ((self._base[places] - self._base[places[0]]) * across.conj()).real).sum(axis=0)
-        factors *= (self._normal[places] * across.conj()).real
-        self._equations = _Equations(self._line, steps, places, factors)
-        self._pull = -self._equations.transposed(third[:, None])
-        self._wanted = self._equations.of_unknowns(-(off * self._normal.conj()).real)[:, None]
+        across = across.conj()
+        count = len(across)
+        third = np.zeros(count)
+        for i in range(1, 4):
+            third += factors[i] * ((base[i : i + count] - base[:count]) * across).real
+        for i in range(4):
+            factors[i] *= (normal[i : i + count] * across).real
+        self._equations = _Equations(self._numbering, steps, factors)
+        self._pull = -self._equations.transposed(third[None])
+        self._wanted = self._numbering.of_unknowns(-(off[near] * normal.conj()).real)
 
     def smoothed(self, scale: float) -> tuple[Points, Points]:
         """Smooth the chains along their arc, see `SmoothingSpline.smoothed`."""
         equations, stiffness = self._equations, (WIDTH * scale) ** 6
-        found = equations.solved(stiffness, stiffness * self._pull + equations.share[:, None] * self._wanted)
-        curve = self._base + self._line.sign * found[equations.unknown, 0] * self._normal
+        found = equations.solved(stiffness, stiffness * self._pull + equations.share * self._wanted)
+        curve = self._base + self._line.sign * found[0, self._numbering.unknown] * self._normal
         return curve - self._points, directions(self._line, curve)
 
 
-class _Equations:
-    """The equations (S + stiffness D' D) x = b, with unknowns for own places, numbered so that their band is narrow.
+class _Numbering:
+    """Numbers for the unknowns of own places, such that the band of their equations is narrow; and where entries of D' D belong.
+
+    Rows of D have factors for four places in a line. They are laid out along the line, own places and three more to either side,
+    where rings go on; so D, D' and D' D are sums of shifted products, without a search for places::
+
+        row             0  1  2  3  ...       factor i of row r is that of place r + i
+        place           0  1  2  3  4  5  6
 
     Attributes
     ----------
     unknown
-        (k,) int64, the unknown of each place.
+        (k,) int64, the unknown of each place of the line.
+    near
+        (c,) int64, the places along which rows are laid out.
+    own
+        (u,) int64, those of them that are own places, by their unknowns.
+    """
+
+    def __init__(self, line: PaddedChains) -> None:
+        self.unknown, self.near = _folded(line), np.flatnonzero(line.within(3))
+        own, ring, chain, at = (values[self.near] for values in (line.own, line.ring, line.chain, self.unknown))
+        count = len(at) - 3
+        # Of a ring all rows count, of an open chain those that do not go beyond its ends.
+        self._rows = (chain[:count] == chain[3:]) & (ring[:count] | (own[:count] & own[3:]))
+        places = np.flatnonzero(own)
+        self.at, self.own = at, np.empty(len(places), np.int64)
+        self.own[at[places]] = places
+        self.nodes = at[line.node[self.near]]
+        # The lower half of D' D by diagonals, entry (i, j) of it at [j, i - j], out of the products of places and those `lag` after them.
+        target, source = [], []
+        for lag in range(4):
+            there = places if lag == 0 else places[ring[places] | own[places + lag]]
+            one, other = at[there], at[there + lag]
+            target.append(np.minimum(one, other) * 7 + np.abs(one - other))
+            source.append(there + lag * len(at))
+        self.target, self.source = np.concatenate(target), np.concatenate(source)
+
+    def of_unknowns(self, values: Floats) -> Floats:
+        """Give the unknowns (..., u) the values of their own places, out of (..., c)."""
+        return np.asarray(values[..., self.own])
+
+    def third_derivatives(self, steps: Floats) -> Floats:
+        """Return the factors (4, c - 3) of third derivatives, of places so far from the next one (c - 1,).
+
+        They are times the root of the stretch a row stands for, and 0 where there is no row.
+        """
+        a, b, c = steps[:-2], steps[1:-1], steps[2:]
+        ab, bc = a + b, b + c
+        abc = ab + c
+        # One over the product of the distances to the other three, the sign of which alternates.
+        factors = np.stack([-1 / (a * ab * abc), 1 / (a * b * bc), -1 / (ab * b * c), 1 / (abc * bc * c)])
+        factors *= np.where(self._rows, 6 * np.sqrt(abc / 3), 0.0)
+        return factors
+
+
+class _Equations:
+    """The equations (S + stiffness D' D) x = b.
+
+    Attributes
+    ----------
     share
         (u,) float64, the diagonal of S: the stretch of arc each unknown stands for; nodes hardly count.
     """
 
-    def __init__(self, line: PaddedChains, steps: Floats, places: Ints, factors: Floats) -> None:
-        """Set up D of rows with factors (4, m) at four places each."""
-        self._own, self.unknown = np.flatnonzero(line.own), _folded(line)
-        self.share = self.of_unknowns(np.concatenate([steps[:1], steps]) + np.concatenate([steps, steps[-1:]])) / 2
-        self.share[self.unknown[line.node]] *= NODE_WEIGHT
-        self._at = self.unknown[places]
-        self._factors = factors * line.sign[places]  # a place that repeats another one turned moves the other way
-        # The lower half of D' D by diagonals, entry (i, j) of it at [i - j, j].
-        # Where two of four places stand for one unknown, both halves count.
-        at, size = self._at, len(self._own)
-        i, j = np.tril_indices(4)
-        both = 1 + ((i != j)[:, None] & (at[i] == at[j]))
-        entry = np.abs(at[i] - at[j]) * size + np.minimum(at[i], at[j])
-        squares = np.bincount(entry.ravel(), (both * self._factors[i] * self._factors[j]).ravel(), 7 * size)
-        self._squares = np.asarray(squares, np.float64).reshape(7, size)
-
-    def of_unknowns(self, values: Floats) -> Floats:
-        """Give each unknown (u,) the value of its own place, out of (k,)."""
-        result = np.zeros(len(self._own))
-        result[self.unknown[self._own]] = values[self._own]
-        return result
+    def __init__(self, numbering: _Numbering, steps: Floats, factors: Floats) -> None:
+        """Set up D with factors (4, c - 3) at places so far from the next one (c - 1,)."""
+        self._numbering, self._factors = numbering, factors
+        own, count = numbering.own, factors.shape[1]
+        self.share = (steps[own - 1] + steps[own]) / 2
+        self.share[numbering.nodes] *= NODE_WEIGHT
+        products = np.zeros((4, count + 3))
+        for lag in range(4):
+            for i, product in enumerate(factors[lag:] * factors[: 4 - lag]):
+                products[lag, i : i + count] += product
+        self._squares = np.zeros((len(own), 7))
+        self._squares.reshape(-1)[numbering.target] = products.reshape(-1)[numbering.source]
 
     def transposed(self, rows: Floats) -> Floats:
-        """Return D' rows (u, c), of rows (m, c)."""
-        of_each = [np.bincount(self._at.ravel(), (row * self._factors).ravel(), len(self._own)) for row in rows.T]
-        return np.stack(of_each, axis=1)
+        """Return D' rows (d, u), of rows (d, c - 3)."""
+        count = rows.shape[1]
+        result = np.zeros((len(rows), count + 3))
+        for i, factor in enumerate(self._factors):
+            result[:, i : i + count] += factor * rows
+        return self._numbering.of_unknowns(result)
 
     def solved(self, stiffness: float, b: Floats) -> Floats:
-        """Solve for x (u, c), and once more for what rounding left: wide scales make D' D outweigh S by ten orders and more."""
-        from scipy.linalg import cho_solve_banded, cholesky_banded
+        """Solve for x (d, u), and once more for what rounding left: wide scales make D' D outweigh S by ten orders and more."""
+        from scipy.linalg.lapack import dpbtrf, dpbtrs
 
         band = stiffness * self._squares
-        band[0] += self.share
-        factor = cholesky_banded(band, overwrite_ab=True, lower=True, check_finite=False)
-        x: Floats = cho_solve_banded((factor, True), b, check_finite=False)
-        rows = np.stack([(self._factors * part[self._at]).sum(axis=0) for part in x.T], axis=1)
-        left = b - self.share[:, None] * x - stiffness * self.transposed(rows)
-        return x + np.asarray(cho_solve_banded((factor, True), left, overwrite_b=True, check_finite=False))
+        band[:, 0] += self.share
+        # Bands and right hand sides lie as LAPACK wants them: nothing is copied.
+        factor, failed = dpbtrf(band.T, lower=1, overwrite_ab=1)
+        if failed:
+            raise np.linalg.LinAlgError("smoothing spline: the equations are not positive definite")
+        x = dpbtrs(factor, b.T, lower=1)[0].T
+        at, count = self._numbering.at, self._factors.shape[1]
+        along = x[:, at]
+        rows = self._factors[0] * along[:, :count]
+        for i in range(1, 4):
+            rows += self._factors[i] * along[:, i : i + count]
+        left = b - self.share * x - stiffness * self.transposed(rows)
+        x += dpbtrs(factor, left.T, lower=1, overwrite_b=1)[0].T
+        return np.asarray(x)
+
+
+def _rows(factors: Floats, values: Floats) -> Floats:
+    """Return D values (d, c - 3), of values (d, c); from the first of four places, not from afar, for the sake of rounding."""
+    count = factors.shape[1]
+    first, rows = values[:, :count], np.zeros((len(values), count))
+    for i in range(1, 4):
+        rows += factors[i] * (values[:, i : i + count] - first)
+    return rows
 
 
 def directions(line: PaddedChains, curve: Points) -> Points:
     """Return the unit directions (k,) of a curve at each place; at a node it goes on as it does beside it."""
-    slope, node = np.gradient(curve), np.flatnonzero(line.node)
+    slope, node = np.empty_like(curve), np.flatnonzero(line.node)
+    slope[1:-1] = curve[2:] - curve[:-2]
+    slope[[0, -1]] = slope[[1, -2]]
     slope[node] = slope[np.where(line.own[node + 1], node + 1, node - 1)]
-    return np.asarray(slope / np.maximum(np.abs(slope), 1e-12))
-
-
-def _third_derivatives(line: PaddedChains, steps: Floats) -> tuple[Ints, Floats]:
-    """Four places in a row (4, m), and their factors in the third derivative there, times the root of the stretch it stands for.
-
-    Of a ring all rows count once, of an open chain those that do not go beyond its ends.
-    """
-    own, ring = line.own, line.ring
-    places = np.flatnonzero(own[:-3] & (ring[:-3] | own[3:])) + np.arange(4)[:, None]
-    a, b, c = steps[places[:3]]
-    # One over the product of the distances to the other three, the sign of which alternates.
-    factors = np.stack([-1 / (a * (a + b) * (a + b + c)), 1 / (a * b * (b + c)), -1 / ((a + b) * b * c), 1 / ((a + b + c) * (b + c) * c)])
-    return places, 6 * np.sqrt((a + b + c) / 3) * factors
+    as_rows(slope)[:] *= (1 / np.maximum(np.abs(slope), 1e-12))[:, None]
+    return slope
 
 
 def _folded(line: PaddedChains) -> Ints:
