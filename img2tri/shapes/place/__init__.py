@@ -10,5 +10,6 @@ corners                Where an outline has a corner, and where exactly it is.
 constrained_smoothing  Each crossing onto the widest smoothing spline that fits its bounds; then each chain to its area.
 node_placement         Nodes where the chains that meet there lead, and chains bent to end at their nodes.
 smoothing_splines      The smooth curve of a scale through the points of chains.
+along_the_arc          Distances from marked places of chains, and values that fade to both sides.
 padded_chains          Chains continued beyond their ends and laid out on one line.
 """

@@ -25,8 +25,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from img2tri.arrays import Bools, ChainIndex, Floats, Ints, Points, cross
+from img2tri.shapes.place.along_the_arc import fade_out
 from img2tri.shapes.place.padded_chains import PaddedChains
-from img2tri.shapes.place.smoothing_splines import PADDING, CurvatureSpline, SmoothingSpline, fade_out, farther_than
+from img2tri.shapes.place.smoothing_splines import PADDING, CurvatureSpline, SmoothingSpline
 
 NARROW, WIDE = (1.5, 4.0), (9.0, 20.0, 48.0)  # px, scales of splines smooth in x and y, and of those smooth in their curvature
 MISFIT = 0.4  # of the slack: by how much a spline may miss the bounds of a crossing and still count as fitting
@@ -125,7 +126,7 @@ def widest_fitting_spline(s: BoundedChains) -> tuple[Floats, ChainEnds]:
             bounded = np.clip(t, low, high)
             # How far bounds are missed counts across the spline: along dual edges that run nearly as it does, it says little.
             miss = (t - bounded) * across
-            fits = farther_than(line, narrow.steps, (np.abs(miss) > misfit) & crossing, WINDOW * scale)
+            fits = narrow.arc.farther_than((np.abs(miss) > misfit) & crossing, WINDOW * scale)
             fits &= ~line.ring | (size[np.flatnonzero(chosen)[line.chain]] > RING_SCALES * scale)
             bent = fits & crossing
             for _ in range(BENDS):
@@ -188,30 +189,36 @@ def restore_swept_areas(s: BoundedChains, shift: Floats, wanted: Floats) -> Floa
     """Shift each chain sideways until it sweeps the `wanted` area (c,), seen from the origin; return the new shifts."""
     at, chain = s.chains.indices, s.chains.chain
     ring_start, ring_end = s.chains.ring_ends
+    # All by entries; the last one of a ring follows its first.
+    points, axis, low, high, t = (values[at] for values in (s.points, s.axis, s.low, s.high, shift))
     for _ in range(AREA_ROUNDS):
-        moved = s.points + shift * s.axis
-        z = moved[at]
+        z = points + t * axis
         ahead, behind = np.roll(z, -1), np.roll(z, 1)
         behind[ring_start], ahead[ring_end] = z[ring_end - 1], z[ring_start + 1]
         # A step dt along the axis sweeps the area dt * axis x (ahead - behind) / 2.
-        width = cross(s.axis[at], ahead - behind) / 2
-        missing = wanted - swept_areas(moved, s)
+        width = cross(axis, ahead - behind) / 2
+        missing = wanted - _swept(z, s)
         # A point at one of its bounds may still go back.
-        free = np.where(missing[chain] * width > 0, shift[at] < s.high[at] - AT_BOUND, s.low[at] + AT_BOUND < shift[at])
+        free = np.where(missing[chain] * width > 0, t < high - AT_BOUND, low + AT_BOUND < t)
         free[ring_end] = False
         gain = np.bincount(chain, np.abs(width) * free, len(wanted))
         step = np.divide(missing, gain, out=np.zeros_like(gain), where=gain > 0.1)
         if np.abs(step).max(initial=0) < NO_STEP:
             break
-        move = np.zeros_like(shift)
-        move[at[free]] = (np.clip(step, -0.25, 0.25)[chain] * np.sign(width))[free]
-        shift = np.clip(shift + move, s.low, s.high)
-    return shift
+        t = np.clip(t + np.clip(step, -0.25, 0.25)[chain] * np.sign(width) * free, low, high)
+        t[ring_end] = t[ring_start]
+    result = shift.copy()
+    result[at] = t
+    return result
 
 
 def swept_areas(z: Points, s: BoundedChains) -> Floats:
-    """Area (c,) each chain sweeps as seen from the origin."""
-    p = z[s.chains.indices]
+    """Area (c,) each chain sweeps as seen from the origin, its points being at these places (n,)."""
+    return _swept(z[s.chains.indices], s)
+
+
+def _swept(p: Points, s: BoundedChains) -> Floats:
+    """Area (c,) each chain sweeps, its entries being at these places (k,)."""
     area = np.zeros(len(p))
     area[:-1] = cross(p[:-1], p[1:]) / 2
     area[s.chains.last] = 0

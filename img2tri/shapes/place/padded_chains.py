@@ -78,3 +78,10 @@ def convolve(line: Points, kernel: Floats) -> Points:
     """Convolve complex values with a real kernel of odd length; the result is as long as `line`."""
     result: Points = np.convolve(line.real, kernel, "same") + 1j * np.convolve(line.imag, kernel, "same")
     return result
+
+
+def gaussian(scale: float) -> Floats:
+    """Return a Gaussian of standard deviation `scale` as a kernel; its sum is 1."""
+    reach = int(np.ceil(3 * scale))
+    g = np.exp(-0.5 * (np.arange(-reach, reach + 1) / scale) ** 2)
+    return np.asarray(g / g.sum())

@@ -19,8 +19,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from img2tri.arrays import Bools, Floats, Ints, Points, as_complex, as_rows
-from img2tri.shapes.place.padded_chains import PaddedChains, convolve
+from img2tri.arrays import Floats, Ints, Points, as_complex, as_rows
+from img2tri.shapes.place.along_the_arc import ArcLengths
+from img2tri.shapes.place.padded_chains import PaddedChains, convolve, gaussian
 
 WIDTH = 0.4775  # of the scale: waves three scales long are left with half of their height
 ARC_BLUR = 2.2  # places: the Gaussian that takes the steps of pixels out of the length of a line
@@ -36,8 +37,8 @@ class SmoothingSpline:
     ----------
     line, points
         The chains, padded, and (k,) where their places lie.
-    steps
-        (k - 1,) float64, the way along the arc from each place to the next, in px; without meaning between chains.
+    steps, arc
+        (k - 1,) float64, the way along the arc from each place to the next, in px, without meaning between chains; and ways of any length.
     """
 
     def __init__(self, line: PaddedChains, points: Points) -> None:
@@ -49,7 +50,8 @@ class SmoothingSpline:
             Chains with a padding of `PADDING` places or more, and (k,) its points, from `PaddedChains.points`.
         """
         self.line, self.points, self.numbering = line, points, _Numbering(line)
-        self.steps = np.maximum(np.abs(np.diff(convolve(points, _gaussian(ARC_BLUR)))), LEAST_STEP)
+        self.steps = np.maximum(np.abs(np.diff(convolve(points, gaussian(ARC_BLUR)))), LEAST_STEP)
+        self.arc = ArcLengths(line, self.steps)
         self._known: dict[float, tuple[Points, Points]] = {}
         near = self.numbering.near
         steps, z = self.steps[near[:-1]], points[near]
@@ -258,37 +260,3 @@ def _folded(line: PaddedChains) -> Ints:
     number = np.zeros(len(line.own), np.int64)
     number[own] = first + np.where(line.ring[own], np.where(along < back, 2 * along, 2 * back - 1), along)
     return np.asarray(number[line.original])
-
-
-def farther_than(line: PaddedChains, steps: Floats, marks: Bools, distance: float) -> Bools:
-    """Tell which places (k,) lie farther than `distance` px along the arc from all marked places of their chain."""
-    own = np.flatnonzero(line.own)
-    chain, ring, at = line.chain[own], line.ring[own], marks[own]
-    first = np.flatnonzero(np.diff(chain, prepend=-1))
-    length = np.add.reduceat(steps[own], first)
-    along = np.cumsum(steps[own]) - steps[own]
-    along -= along[first][chain]
-    # Chains are laid out one after the other, out of each other's reach. In a ring there are marks before its start and after its end.
-    arc = along + (np.cumsum(length + 3 * distance) - length)[chain]
-    before, after = at & ring & (length[chain] - along <= distance), at & ring & (along <= distance)
-    marked = np.concatenate([[-np.inf], arc[at], arc[before] - length[chain[before]], arc[after] + length[chain[after]], [np.inf]])
-    marked.sort()
-    next_one = np.searchsorted(marked, arc)
-    far = np.zeros(len(line.own), bool)
-    far[own] = np.minimum(arc - marked[next_one - 1], marked[next_one] - arc) > distance
-    return np.asarray(far[line.original])
-
-
-def fade_out(line: PaddedChains, values: Floats, width: float) -> Floats:
-    """Let each value (k,) other than 0 fade to both sides, over about `width` places; those near each other do not add up."""
-    fading = _gaussian(width)
-    fading /= fading.max()
-    crowd = np.convolve((values != 0).astype(np.float64), fading, "same")[line.original]
-    return np.asarray(np.convolve(values / np.maximum(crowd, 1), fading, "same")[line.original])
-
-
-def _gaussian(scale: float) -> Floats:
-    """Return a Gaussian of standard deviation `scale` as a kernel; its sum is 1."""
-    reach = int(np.ceil(3 * scale))
-    g = np.exp(-0.5 * (np.arange(-reach, reach + 1) / scale) ** 2)
-    return np.asarray(g / g.sum())
