@@ -190,7 +190,7 @@ def restore_swept_areas(s: BoundedChains, shift: Floats, wanted: Floats) -> Floa
     at, chain = s.chains.indices, s.chains.chain
     ring_start, ring_end = s.chains.ring_ends
     # All by entries; the last one of a ring follows its first.
-    points, axis, low, high, t = (values[at] for values in (s.points, s.axis, s.low, s.high, shift))
+    points, axis, low, high, t = s.points[at], s.axis[at], s.low[at], s.high[at], shift[at]
     for _ in range(AREA_ROUNDS):
         z = points + t * axis
         ahead, behind = np.roll(z, -1), np.roll(z, 1)
