@@ -71,7 +71,7 @@ class TriangleMesh(MeshExports):
     def _repr_html_(self) -> str:
         from img2tri.views.figures.notebook import html
 
-        return html(self.vertices, self.triangles, self.regions, upward=self.frame.upward)
+        return html(self.vertices, self.triangles, self.regions, upward=self.frame.upward, colours=self.colours)
 
     @cached_property
     def report(self) -> Report:

@@ -63,6 +63,11 @@ class MeshExports:
         (left, bottom), (right, top) = self.vertices.min(axis=0).tolist(), self.vertices.max(axis=0).tolist()
         return left, bottom, right, top
 
+    @property
+    def colours(self) -> dict[int, tuple[int, int, int]]:
+        """Label -> (red, green, blue) of the regions that have a colour in the image: those of its palette, or RGB labels."""
+        return self.origin.colours if self.origin else {}
+
     def to_trimesh(
         self, height: float | Mapping[int, float] | None = None, *, split: bool = False, base: float | None = None
     ) -> Trimesh | Scene:
@@ -75,7 +80,7 @@ class MeshExports:
         if split:
             from img2tri.views.objects.body_per_region import to_scene
 
-            about = {"names": self.names, "colours": self._colours(), "base": self._base(base), **self._data()}
+            about = {"names": self.names, "colours": self.colours, "base": self._base(base), **self._data()}
             return to_scene(self.vertices, self.triangles, self.regions, height=height, **about)
         from img2tri.views.objects.to_trimesh import to_trimesh
 
@@ -199,10 +204,10 @@ class MeshExports:
             save_page(self, path, image)
         elif suffix in vectors.DRAWING_FORMATS:
             about = {"bounds": self._bounds(), "upward": self.frame.upward, "field_data": self._data()["field_data"]}
-            about["colours"] = self._colours()
+            about["colours"] = self.colours
             vectors.save_outlines(path, self.outlines(), names=self.names, **about)
         else:
-            about = {"names": self.names, "colours": self._colours(), "base": self._base(base), **self._data(data=data)}
+            about = {"names": self.names, "colours": self.colours, "base": self._base(base), **self._data(data=data)}
             save(path, self.vertices, self.triangles, self.regions, height=height, **about)
 
     def _cells(
@@ -239,10 +244,6 @@ class MeshExports:
         solid = solid_cells(flat, points, rows)
         return tetrahedra(solid) if shape == "tetrahedra" else solid
 
-    def _colours(self) -> dict[int, tuple[int, int, int]]:
-        """Return the colours the image has for its labels, as far as it has any."""
-        return self.origin.colours if self.origin else {}
-
     def _base(self, thickness: float | None) -> Base | None:
         """Return the plate below a solid: under the image, or where that is not known, the mesh."""
         from img2tri.views.objects.base_plate import Base
@@ -261,6 +262,7 @@ class MeshExports:
         if self.origin is not None:
             f = self.frame
             about |= {"recipe": self.origin.recipe, **self.origin.settings, "names": about["names"], "options": self.origin.options}
+            about |= {"colours": {str(label): colour for label, colour in self.colours.items()}} if self.colours else {}
             about["frame"] = {"shape": f.shape, "spacing": f.spacing, "corner": f.corner, "upward": f.upward}
         texts = {"img2tri": json.dumps(about, default=str)} | ({"units": about["units"]} if about.get("units") else {})
         cell_data: dict[str, Any] = dict(measure(self.vertices, self.triangles, ["q"])) if quality else {}

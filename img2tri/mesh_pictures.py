@@ -27,7 +27,8 @@ def figure(mesh: Any, image: Any, path: str | os.PathLike[str] | None, *, colour
     q = measure(mesh.vertices, mesh.triangles, ["q"])["q"]
     values = meshed_part(mesh, image)
     unit = (mesh.origin.settings.get("units") if mesh.origin else None) or ""
-    about = {"regions": mesh.regions, "values": q, "frame": mesh.frame, "image": values, "names": mesh.names, "unit": unit}
+    about = {"regions": mesh.regions, "values": q, "frame": mesh.frame, "image": values, "unit": unit}
+    about |= {"names": mesh.names, "colours": mesh.colours}
     return draw(mesh.vertices, mesh.triangles, colour_by=colour_by, path=path, ax=ax, **about)
 
 
@@ -41,6 +42,7 @@ def page_about(mesh: Any, values: Any, *, title: str | None = None, command: str
     """Return a page about a mesh, over the `values` of its image; without an origin it has no certificate."""
     settings, report = (mesh.origin.settings, mesh.report.to_json()) if mesh.origin else ({}, "{}")
     about = {"frame": mesh.frame, "regions": mesh.regions, "names": mesh.names, "unit": settings.get("units") or "", "image": values}
+    about["colours"] = mesh.colours
     if command is None:
         command = "" if mesh.origin is None else _again(settings.get("source"), mesh.origin.options)
     named = Path(settings.get("source") or "mesh").name if title is None else title

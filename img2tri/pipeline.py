@@ -21,7 +21,7 @@ from img2tri.paper.defaults import GRID_STEP, PAPER_SMOOTHING, PAPER_THRESHOLD
 from img2tri.raster.in_memory.image_hash import image_hash
 from img2tri.raster.labels.cropping import crop
 from img2tri.raster.labels.early_warnings import early_warnings
-from img2tri.raster.labels.label_numbers import label_colours
+from img2tri.raster.labels.label_numbers import colour_names, label_colours
 from img2tri.raster.labels.otsu_threshold import Level
 from img2tri.raster.labels.segmentation import Segmentation, segment, without_specks
 from img2tri.raster.metadata.wanted_width import as_wide_as
@@ -115,7 +115,7 @@ def mesh_image(image: Any, *, progress: Callable[[str, float], None] | None = No
             o["recipe"], kept, kept | _chosen(o, picture, zones, sizes, within), outlines, *pixels_beside(dual_edges),
             areas=pixel_areas(dual_edges) if zones.gray is None else enclosed_areas(outlines),  # gray values may place the outlines
             counted={**made.counted, "removed": {**removed, **zones.counted}}, notes=[*decisions(picture, zones), *warned],
-            colours=label_colours(picture, outlines.labels) if o["labels"] else {},
+            colours=label_colours(picture, outlines.labels[1:], quantized=o["colors"] is not None) if _labelled(o) else {},
             tolerance=within if o["recipe"] == "conforming" else None, min_angle=o["min_angle"] if o["recipe"] == "conforming" else None,
         ),
     )  # fmt: skip
@@ -210,10 +210,18 @@ def _check_found(outlines: Outlines, zones: Segmentation, o: MeshOptions, remove
 
 
 def _names(o: MeshOptions, picture: Picture, outlines: Outlines) -> dict[int, str]:
-    """Return the names of regions as given, or as the file has them for labels that are there."""
-    if o["names"] is not None or not o["labels"]:
+    """Return the names of regions as given, or as the file has them for labels that are there; labels that are colours are named so."""
+    if not _labelled(o):
         return o["names"] or {}
-    return {label: name for label, name in picture.notes.get("names", {}).items() if label in outlines.labels[1:]}
+    named = colour_names(picture, outlines.labels[1:], quantized=o["colors"] is not None)
+    if o["names"] is None and o["labels"]:
+        named |= {label: name for label, name in picture.notes.get("names", {}).items() if label in outlines.labels[1:]}
+    return named | (o["names"] or {})
+
+
+def _labelled(o: MeshOptions) -> bool:
+    """Tell whether the labels of regions are values of pixels, or colours."""
+    return bool(o["labels"]) or o["colors"] is not None
 
 
 def _advice(level: Level | None, removed: int) -> str:

@@ -148,7 +148,8 @@ class Session:
             ),
             "seconds": time.perf_counter() - start,
         }
-        about: dict[str, Any] = {"frame": picture.frame, "names": mesh.names, "unit": str(options.get("units") or "")}
+        about: dict[str, Any] = {"frame": picture.frame, "unit": str(options.get("units") or "")}
+        about |= {"names": mesh.names, "colours": mesh.colours}
         return packed_mesh(mesh.vertices, mesh.triangles, mesh.regions, **metrics, **about, **head)
 
     def certificate(self) -> dict[str, Any]:
@@ -167,7 +168,7 @@ class Session:
         facts = html_tables.from_json(mesh.report.to_json())
         metrics: dict[str, Any] = measure(mesh.vertices, mesh.triangles, ["q", "min_angle"])
         frame = mesh.frame if self._picture is None else self._picture.frame
-        said = pieces(mesh.vertices, mesh.triangles, mesh.regions, **metrics, names=mesh.names, facts=facts)
+        said = pieces(mesh.vertices, mesh.triangles, mesh.regions, **metrics, names=mesh.names, colours=mesh.colours, facts=facts)
         return {"pieces": said, "places": placed_marks(html_tables.places(facts), frame)}
 
     def download(self, kind: str, height: float | None = None) -> tuple[str, bytes]:

@@ -192,8 +192,15 @@ def _check_found(numbers: NDArray[Any], chosen: list[int]) -> None:
         raise ImageError(f"labels: expected values of the image, found {missing[0]}, which is not one; there are {listed}{more}")
 
 
-def label_colours(picture: Picture, labels: NDArray[Any]) -> dict[int, tuple[int, int, int]]:
+def label_colours(picture: Picture, labels: NDArray[Any], *, quantized: bool = False) -> dict[int, tuple[int, int, int]]:
     """Return the colour an image has for each of some labels: that of its palette, or the label itself, which is a colour.
+
+    Parameters
+    ----------
+    picture, labels
+        The image, and labels of it.
+    quantized
+        Whether labels are not the values of pixels, but the colours, or grays, these were reduced to.
 
     Examples
     --------
@@ -202,13 +209,36 @@ def label_colours(picture: Picture, labels: NDArray[Any]) -> dict[int, tuple[int
     >>> label_colours(picture, np.array([0xDC2828]))
     {14428200: (220, 40, 40)}
     """
-    known = {int(label) for label in labels.tolist() if label > 0}
-    palette = picture.notes.get("palette")
-    if palette is not None and picture.values.ndim == 2:
+    palette, known = picture.notes.get("palette"), [label for label in labels.tolist() if label >= 0]
+    if palette is not None and picture.values.ndim == 2 and not quantized:
         table = np.asarray(palette)
         return {label: (int(r), int(g), int(b)) for label in known if label < len(table) for r, g, b in [table[label, :3]]}
-    if picture.values.ndim == 3 and picture.values.dtype in (np.uint8, np.uint16):
-        bits = 8 * picture.values.dtype.itemsize
+    bits = _bits_of_colours(picture, quantized=quantized)
+    if bits:
         parts = {label: tuple(label >> bits * i & (1 << bits) - 1 for i in (2, 1, 0)) for label in known}
         return {label: (r >> bits - 8, g >> bits - 8, b >> bits - 8) for label, (r, g, b) in parts.items()}
+    if quantized and picture.values.dtype == np.uint8:
+        return {label: (label, label, label) for label in known}
     return {}
+
+
+def colour_names(picture: Picture, labels: NDArray[Any], *, quantized: bool = False) -> dict[int, str]:
+    """Return a name for each label that is a colour: ``color_`` and its digits, as they are typed to pick it.
+
+    Examples
+    --------
+    >>> from img2tri.types import Frame
+    >>> picture = Picture(np.zeros((1, 1, 3), np.uint8), Frame((1, 1)))
+    >>> colour_names(picture, np.array([0xDC2828, 0xFF]))
+    {14428200: 'color_dc2828', 255: 'color_0000ff'}
+    """
+    digits = 3 * _bits_of_colours(picture, quantized=quantized) // 4
+    return {label: f"color_{label:0{digits}x}" for label in labels.tolist() if label >= 0 and digits}
+
+
+def _bits_of_colours(picture: Picture, *, quantized: bool) -> int:
+    """Return the bits of red, green and blue in labels that are colours; 0 if they are none."""
+    if quantized and picture.notes.get("palette") is not None:
+        return 8
+    values = picture.values
+    return 8 * values.dtype.itemsize if values.ndim == 3 and values.dtype in (np.uint8, np.uint16) else 0

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from img2tri.arrays import Floats, Ints, unique_edges
 from img2tri.errors import ParameterError
 from img2tri.types import Frame
-from img2tri.views.figures.region_colours import palette
+from img2tri.views.figures.region_colours import Colours, region_colours
 from img2tri.views.objects.region_borders import bordering
 
 if TYPE_CHECKING:
@@ -157,7 +157,9 @@ def draw_image(page: Page, picture: NDArray[Any], frame: Frame, *, faint: bool) 
     page.main.set(xlim=view[0], ylim=view[1])
 
 
-def draw_mesh(page: Page, vertices: Floats, triangles: Ints, *, labels: NDArray[Any], quality: Floats, colour_by: str | None) -> None:
+def draw_mesh(
+    page: Page, vertices: Floats, triangles: Ints, *, labels: NDArray[Any], quality: Floats, colour_by: str | None, colours: Colours
+) -> None:
     """Draw the triangles filled, with their edges where there is room, and their borders; or, by None, red edges alone."""
     from matplotlib.collections import LineCollection, PolyCollection
 
@@ -174,8 +176,8 @@ def draw_mesh(page: Page, vertices: Floats, triangles: Ints, *, labels: NDArray[
         if colour_by == "quality":
             colour: dict[str, Any] = {"array": quality, "cmap": _COLOURS, "clim": (0, 1)}
         else:
-            names, index = np.unique(labels, return_inverse=True)
-            colour = {"facecolors": palette(len(names))[index] / 255}
+            present, index = np.unique(labels, return_inverse=True)
+            colour = {"facecolors": np.array(region_colours(present.tolist(), colours))[index] / 255}
         # Edges in the colour of the face close the hair lines that smoothing would leave between faces.
         drawn = [PolyCollection(corners, edgecolors="face", linewidths=0.3, rasterized=large, **colour)]
         shown = ~borders & (lengths > _ROOM)
@@ -244,11 +246,12 @@ def draw_names(page: Page, vertices: Floats, triangles: Ints, labels: NDArray[An
         page.main.text(x, y, names[int(present[i])], ha="center", va="center", fontsize=7.5, color=_INK, path_effects=outline, clip_on=True)
 
 
-def draw_legend(page: Page, names: Mapping[int, str], *, inside: bool = False) -> float:
+def draw_legend(page: Page, names: Mapping[int, str], colours: Colours, *, inside: bool = False) -> float:
     """Name the colours of the regions at the foot of the side, or `inside` the axes; return the inches this takes."""
     from matplotlib.patches import Patch
 
-    patches = [Patch(color=colour, label=name) for name, colour in zip(names.values(), palette(len(names)) / 255, strict=True)]
+    shown = np.array(region_colours(list(names), colours)) / 255
+    patches = [Patch(color=colour, label=name) for name, colour in zip(names.values(), shown, strict=True)]
     style: dict[str, Any] = {"handles": patches, "fontsize": 8, "labelcolor": _QUIET, "handlelength": 1, "handleheight": 1}
     if inside:
         page.main.legend(**style)

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from img2tri.arrays import Bools, Floats, Ints, runs, unique_edges
 from img2tri.views.figures.corner_angles import corner_angles
 from img2tri.views.figures.image_png import png
-from img2tri.views.figures.region_colours import palette
+from img2tri.views.figures.region_colours import Colours, as_hex, region_colours
 from img2tri.views.objects.flat_or_extruded import per_triangle, plane_mesh
 from img2tri.views.objects.region_borders import bordering
 
@@ -25,7 +25,14 @@ _ROWS = 2 * _STEPS * _SIDE  # more than the grid has
 _LINE = (0x5B, 0x6B, 0x7B, 255)
 
 
-def svg(vertices: ArrayLike, triangles: ArrayLike, regions: ArrayLike | None = None, *, upward: bool = True) -> str:
+def svg(
+    vertices: ArrayLike,
+    triangles: ArrayLike,
+    regions: ArrayLike | None = None,
+    *,
+    upward: bool = True,
+    colours: Colours | None = None,
+) -> str:
     """Draw a plane mesh, 400 px on its longer side.
 
     Parameters
@@ -36,6 +43,8 @@ def svg(vertices: ArrayLike, triangles: ArrayLike, regions: ArrayLike | None = N
         (m,) int64; None is one region.
     upward
         Whether y points up; False draws it downwards, as in images.
+    colours
+        Label -> (red, green, blue) of the region, such as those of the image; the others get colours of their own.
 
     Returns
     -------
@@ -59,19 +68,26 @@ def svg(vertices: ArrayLike, triangles: ArrayLike, regions: ArrayLike | None = N
     border = bordering(sides, labels)
     if len(t) <= LARGEST:
         line = f'<path d="{_lines(places[edges[border]])}" fill="none" stroke="#5b6b7b" stroke-width="1" stroke-linecap="round"/>'
-        drawn = _triangles(places, t, labels) + line
+        drawn = _triangles(places, t, labels, colours or {}) + line
     else:
         p, q, r = (v[t[:, i]] for i in range(3))
         twice = (q - p)[:, 0] * (r - p)[:, 1] - (q - p)[:, 1] * (r - p)[:, 0]
         turns = np.where((twice > 0) == upward, -1, 1)  # places have y down
-        drawn = _regions(places, t, turns, labels, border[sides], (width, height))
+        drawn = _regions(places, t, turns, labels, border[sides], (width, height), colours or {})
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="-2 -2 {width + 4} {height + 4}" width="{width + 4}" height="{height + 4}" '
         f'style="max-width:100%;height:auto" role="img" aria-label="{_numbers(v, t, labels)}">{drawn}</svg>'
     )
 
 
-def html(vertices: ArrayLike, triangles: ArrayLike, regions: ArrayLike | None = None, *, upward: bool = True) -> str:
+def html(
+    vertices: ArrayLike,
+    triangles: ArrayLike,
+    regions: ArrayLike | None = None,
+    *,
+    upward: bool = True,
+    colours: Colours | None = None,
+) -> str:
     """Draw a plane mesh, as `svg` does, with its counts and worst angle below.
 
     Examples
@@ -81,7 +97,7 @@ def html(vertices: ArrayLike, triangles: ArrayLike, regions: ArrayLike | None = 
     """
     v, t = plane_mesh(vertices, triangles)
     labels = np.ones(len(t), np.int64) if regions is None else per_triangle("regions", regions, len(t))
-    drawing, numbers = svg(v, t, labels, upward=upward), _numbers(v, t, labels)
+    drawing, numbers = svg(v, t, labels, upward=upward, colours=colours), _numbers(v, t, labels)
     style = "font:12px/1.6 system-ui,sans-serif;opacity:.75;font-variant-numeric:tabular-nums"
     return f'<div class="img2tri">{drawing}<div style="{style}">{numbers}</div></div>'
 
@@ -101,18 +117,20 @@ def _places(vertices: Floats, *, upward: bool) -> tuple[Ints, tuple[int, int]]:
     return places, (width, height)
 
 
-def _triangles(places: Ints, triangles: Ints, labels: NDArray[np.generic]) -> str:
+def _triangles(places: Ints, triangles: Ints, labels: NDArray[np.generic], colours: Colours) -> str:
     """Draw all triangles of a region as one path, their sides in a lighter tone."""
     values, index = np.unique(labels, return_inverse=True)
     paths = []
-    for i, colour in enumerate(_colours(len(values))):
+    for i, colour in enumerate(as_hex(region_colours(values.tolist(), colours))):
         corners = places[triangles[index == i]]
         moves = "".join(f"M{_at(*a)}L{_at(*b)}L{_at(*c)}Z" for a, b, c in corners.tolist())
         paths.append(f'<path d="{moves}" fill="{colour}" stroke="#fff" stroke-opacity=".6" stroke-width=".5"/>')
     return "".join(paths)
 
 
-def _regions(places: Ints, triangles: Ints, turns: Ints, labels: NDArray[np.generic], borders: Bools, size: tuple[int, int]) -> str:
+def _regions(
+    places: Ints, triangles: Ints, turns: Ints, labels: NDArray[np.generic], borders: Bools, size: tuple[int, int], colours: Colours
+) -> str:
     """Draw the regions, filled and with lines between them, as a picture of two dots per px."""
     values, index = np.unique(labels, return_inverse=True)
     width, height = _STEPS * size[0], _STEPS * size[1]
@@ -120,8 +138,8 @@ def _regions(places: Ints, triangles: Ints, turns: Ints, labels: NDArray[np.gene
     edge = np.zeros(shown.shape, bool)
     for here, there in ((np.s_[1:, :], np.s_[:-1, :]), (np.s_[:, 1:], np.s_[:, :-1])):
         edge[here] |= shown[here] != shown[there]
-    colours = np.concatenate([[[255, 255, 255]], palette(len(values))]).astype(np.uint8)[shown]
-    picture = np.dstack([colours, np.where(shown > 0, 255, 0).astype(np.uint8)])
+    drawn = np.array([(255, 255, 255), *region_colours(values.tolist(), colours)], np.uint8)[shown]
+    picture = np.dstack([drawn, np.where(shown > 0, 255, 0).astype(np.uint8)])
     picture[edge] = _LINE
     data = base64.b64encode(png(picture)).decode()
     return f'<image width="{size[0]}" height="{size[1]}" preserveAspectRatio="none" href="data:image/png;base64,{data}"/>'
@@ -147,10 +165,6 @@ def region_map(places: Ints, triangles: Ints, turns: Ints, index: Ints, borders:
     np.add.at(begun, (row.clip(0, height - 1), column.clip(0, width)), -(up[side] * region[side]).astype(np.int64))
     found: Ints = begun.cumsum(axis=1)[:, :width].clip(0, None)
     return found
-
-
-def _colours(count: int) -> list[str]:
-    return [f"#{red:02x}{green:02x}{blue:02x}" for red, green, blue in palette(count).tolist()]
 
 
 def _lines(ends: Ints) -> str:

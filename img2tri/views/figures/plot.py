@@ -20,6 +20,7 @@ from img2tri.errors import choice
 from img2tri.types import Frame
 from img2tri.views.figures import figure_parts as parts
 from img2tri.views.figures.corner_angles import corner_angles
+from img2tri.views.figures.region_colours import Colours
 from img2tri.views.formats.atomic_write import known_suffix, store, writable
 from img2tri.views.objects.flat_or_extruded import per_triangle, plane_mesh
 
@@ -45,6 +46,7 @@ def draw(
     histogram: bool = True,
     title: str | None = None,
     names: Mapping[int, str] | None = None,
+    colours: Colours | None = None,
     unit: str = "",
     ax: Axes | None = None,
     path: str | os.PathLike[str] | None = None,
@@ -75,6 +77,8 @@ def draw(
     names, unit
         Label -> name of the region, for the legend; of the world, such as "mm", for the axes. With more than 12 regions the largest are
         named where they lie.
+    colours
+        Label -> (red, green, blue) of the region, such as those of the image; the others get colours of their own.
     ax
         Axes of a figure of yours to draw in, without histogram; the figure is returned. None makes one.
     path
@@ -122,9 +126,9 @@ def draw(
     parts.draw_unit(page, unit)
     if picture is not None and frame is not None:
         parts.draw_image(page, picture, frame, faint=colour_by is not None)
-    parts.draw_mesh(page, v, t, labels=labels, quality=quality, colour_by=colour_by)
+    parts.draw_mesh(page, v, t, labels=labels, quality=quality, colour_by=colour_by, colours=colours or {})
     called = {label: (names or {}).get(label, str(label)) for label in np.unique(labels).tolist()}
-    foot = parts.draw_legend(page, called, inside=ax is not None) if named else 0.0
+    foot = parts.draw_legend(page, called, colours or {}, inside=ax is not None) if named else 0.0
     if colour_by == "region" and not named:
         parts.draw_names(page, v, t, labels, called)
     if filled and ax is None:

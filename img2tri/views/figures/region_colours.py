@@ -22,9 +22,10 @@ _LINEAR = np.array(
     ]
 )
 _GOLDEN_ANGLE = np.pi * (3 - np.sqrt(5))
+Colours = Mapping[int, Sequence[int]]  # label -> red, green and blue, 0 to 255
 
 
-def region_colours(labels: Sequence[int], colours: Mapping[int, Sequence[int]] | None = None) -> list[tuple[int, int, int]]:
+def region_colours(labels: Sequence[int], colours: Colours | None = None) -> list[tuple[int, int, int]]:
     """Return the colour of each region: the one that is known of it, or one of `palette`.
 
     Examples
@@ -35,6 +36,17 @@ def region_colours(labels: Sequence[int], colours: Mapping[int, Sequence[int]] |
     known = colours or {}
     chosen = [known.get(label, other) for label, other in zip(labels, palette(len(labels)).tolist(), strict=True)]
     return [(int(red), int(green), int(blue)) for red, green, blue in chosen]
+
+
+def as_hex(colours: Sequence[Sequence[int]]) -> list[str]:
+    """Write colours as browsers do.
+
+    Examples
+    --------
+    >>> as_hex(region_colours([7], {7: (220, 40, 40)}))
+    ['#dc2828']
+    """
+    return [f"#{red:02x}{green:02x}{blue:02x}" for red, green, blue in colours]
 
 
 def palette(count: int) -> NDArray[np.uint8]:

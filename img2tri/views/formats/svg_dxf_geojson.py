@@ -28,7 +28,7 @@ from numpy.typing import ArrayLike
 
 from img2tri.arrays import Floats, unique_edges
 from img2tri.errors import MeshError
-from img2tri.views.figures.region_colours import region_colours
+from img2tri.views.figures.region_colours import as_hex, region_colours
 from img2tri.views.formats.atomic_write import known_suffix, store, writable
 from img2tri.views.formats.solvers.plain_text import ascii_letters
 from img2tri.views.objects.body_per_region import unique_names
@@ -175,11 +175,10 @@ def _svg_text(drawing: _Drawing) -> str:
         y = top - line[:, 1] if drawing.upward else line[:, 1] - bottom
         return "M" + "L".join(f"{number(a)} {number(b)}" for a, b in zip(x.tolist(), y.tolist(), strict=True))
 
-    colours = [f"#{red:02x}{green:02x}{blue:02x}" for red, green, blue in drawing.colours]
     paths = [
         f'<path id="region_{region.label}" data-label="{region.label}" data-name={quoteattr(region.name)} fill="{colour}" '
         f'd="{"".join(moves(ring[:-1]) + "Z" for rings in region.parts for ring in rings)}"><title>{escape(region.name)}</title></path>'
-        for region, colour in zip(drawing.regions, colours, strict=True)
+        for region, colour in zip(drawing.regions, as_hex(drawing.colours), strict=True)
     ]
     thin = (right - left + top - bottom) / 4000
     mesh = "".join(moves(line) for line in drawing.lines)

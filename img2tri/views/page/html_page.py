@@ -22,11 +22,12 @@ from img2tri import __version__
 from img2tri.arrays import Floats, Ints
 from img2tri.types import Frame
 from img2tri.views.figures.image_png import png
+from img2tri.views.figures.region_colours import Colours, as_hex, region_colours
 from img2tri.views.objects.body_per_region import unique_names
 from img2tri.views.objects.flat_or_extruded import per_triangle, plane_mesh
 from img2tri.views.page import html_tables as tables
 from img2tri.views.page.histogram_svg import chart
-from img2tri.views.page.packing import LARGEST_ANGLE, colours, packed_mesh
+from img2tri.views.page.packing import LARGEST_ANGLE, packed_mesh
 
 SCRIPTS = ("drawing.js", "viewer.js", "page.js")
 POLICY = "default-src 'none'; img-src data: blob:; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
@@ -48,6 +49,7 @@ def page(
     regions: ArrayLike | None = None,
     image: ArrayLike | None = None,
     names: Mapping[int, str] | None = None,
+    colours: Colours | None = None,
     title: str = "mesh",
     command: str = "",
     unit: str = "",
@@ -71,6 +73,8 @@ def page(
         (h, w), (h, w, 3) or (h, w, 4), drawn below the mesh; None draws the mesh alone.
     names
         Label -> name of the region.
+    colours
+        Label -> (red, green, blue) of the region, such as those of the image; the others get colours of their own.
     title
         What the page is about, such as the name of the image's file.
     command
@@ -103,11 +107,11 @@ def page(
     facts = tables.from_json(report)
     places = tables.places(facts)
     called = dict(names or {})
-    packed = packed_mesh(v, t, labels, q=quality, min_angle=angle, frame=frame, names=called, unit=unit, places=places)
+    packed = packed_mesh(v, t, labels, q=quality, min_angle=angle, frame=frame, names=called, colours=colours, unit=unit, places=places)
     picture = "" if image is None else base64.b64encode(png(thinned(np.asarray(image), _PIXELS))).decode()
     fill = {
         **BLANK,
-        **pieces(v, t, labels, q=quality, min_angle=angle, names=called, facts=facts),
+        **pieces(v, t, labels, q=quality, min_angle=angle, names=called, colours=colours, facts=facts),
         "title": tables.text(title),
         "command": tables.text(command),
         "foot": "this page needs nothing but itself",
@@ -139,13 +143,15 @@ def pieces(
     q: Floats,
     min_angle: Floats,
     names: Mapping[int, str],
+    colours: Colours | None = None,
     facts: dict[str, Any],
 ) -> dict[str, str]:
     """Say in HTML what there is to say about a mesh: the name of its place on the page -> a piece."""
     present, counted = np.unique(regions, return_counts=True)
     called = unique_names(present.tolist(), names)
     places = tables.places(facts)
-    rows = [*zip(present.tolist(), called.values(), colours(len(present)), counted.tolist(), strict=True)]
+    shown = as_hex(region_colours(present.tolist(), colours))
+    rows = [*zip(present.tolist(), called.values(), shown, counted.tolist(), strict=True)]
     return {
         "verdict": tables.verdict(facts),
         "tiles": tables.tiles(facts, len(vertices), len(triangles), len(present), q, min_angle),

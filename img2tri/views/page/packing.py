@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from img2tri.arrays import Floats, Ints, unique_edges
 from img2tri.types import Frame
-from img2tri.views.figures.region_colours import palette
+from img2tri.views.figures.region_colours import Colours, as_hex, region_colours
 from img2tri.views.objects.body_per_region import unique_names
 from img2tri.views.objects.region_borders import bordering
 from img2tri.views.page.histogram_svg import BARS, bins, shade
@@ -51,6 +51,7 @@ def packed_mesh(
     min_angle: Floats,
     frame: Frame,
     names: Mapping[int, str],
+    colours: Colours | None = None,
     unit: str = "",
     places: Sequence[Place] = (),
     **head: Any,
@@ -67,7 +68,7 @@ def packed_mesh(
         "ramp": _ramp(),
         "regions": [
             {"label": label, "name": called[label], "colour": colour}
-            for label, colour in zip(present.tolist(), colours(len(present)), strict=True)
+            for label, colour in zip(present.tolist(), as_hex(region_colours(present.tolist(), colours)), strict=True)
         ],
         "places": placed_marks(places, frame),
         "worst": _worst(min_angle),
@@ -104,11 +105,6 @@ def page_coordinates(points: Floats, frame: Frame) -> Floats:
     """Turn world coordinates into pixels of the image, the smaller side being 1, y down as on a screen."""
     rows, columns = frame.row_column(points)
     return np.stack([columns * (frame.spacing[0] / frame.pixel), rows * (frame.spacing[1] / frame.pixel)], axis=-1)
-
-
-def colours(count: int) -> list[str]:
-    """Return so many colours as a browser writes them."""
-    return [f"#{red:02x}{green:02x}{blue:02x}" for red, green, blue in palette(count).tolist()]
 
 
 @cache

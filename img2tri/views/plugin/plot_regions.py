@@ -1,6 +1,7 @@
 """Regions in pyvista, each in a colour of its own and with its name: a dataset with the cell array "region" -> a plot with a legend.
 
-Colours are those of img2tri's figures and files. With more regions than a legend can hold, only colours are shown.
+Colours are those the image has for its labels, else those of img2tri's figures and files. With more regions than a legend can hold, only
+colours are shown.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from img2tri.errors import MeshError
-from img2tri.views.figures.region_colours import palette
+from img2tri.views.figures.region_colours import region_colours
 from img2tri.views.plugin.dataset_to_cells import written_about
 
 if TYPE_CHECKING:
@@ -46,7 +47,9 @@ def plot_regions(dataset: Any, plotter: pyvista.Plotter | None = None, **options
     if "region" not in dataset.cell_data:
         raise MeshError(f"region: expected this cell array, found {', '.join(dataset.cell_data.keys()) or 'none'}")
     labels, index = np.unique(dataset.cell_data["region"], return_inverse=True)
-    colours, names = palette(len(labels)), written_about(dataset).get("names", {})
+    about = written_about(dataset)
+    names, known = about.get("names", {}), {int(label): colour for label, colour in about.get("colours", {}).items()}
+    colours = np.array(region_colours(labels.tolist(), known), np.uint8)
     copy = dataset.copy(deep=False)
     copy.cell_data["region_rgb"] = colours[index]
     flat = dataset.bounds[5] == dataset.bounds[4]
