@@ -101,6 +101,8 @@ class MeshExports:
         Cell arrays: ``region`` and ``q``. With `solid`, an UnstructuredGrid of wedges in `layers`, or with ``cells="tetrahedra"`` of
         these; with ``order=2``, one of quadratic elements whose sides follow the outlines. Grids have the named sets in their field data.
         """
+        from img2tri.views.plugin.accessor import remember
+
         if height is not None and order == 2 and not solid:
             raise ParameterError("order: expected 1 for the surface of a solid, found 2; solid=True gives quadratic wedges")
         if solid and height is None:
@@ -108,12 +110,13 @@ class MeshExports:
         if solid or order != 1 or layers != 1:
             from img2tri.views.formats.solvers.vtu_vtkhdf import to_grid
 
-            return to_grid(self._cells(height, layers, order, cells))
+            return remember(to_grid(self._cells(height, layers, order, cells)), self)
         if cells is not None:
             raise ParameterError(f"cells: expected to be left out without solid=True, found {cells!r}")
         from img2tri.views.objects.to_pyvista import to_pyvista
 
-        return to_pyvista(self.vertices, self.triangles, self.regions, height=height, base=self._base(base), **self._data())
+        made = to_pyvista(self.vertices, self.triangles, self.regions, height=height, base=self._base(base), **self._data())
+        return remember(made, self)
 
     def sets(self) -> Sets:
         """Name the parts: regions, sides of the frame, outer boundary, holes, interfaces ``A__B``, and pieces such as ``left_1``."""
@@ -184,14 +187,8 @@ class MeshExports:
                 raise ParameterError(f"base: expected to be left out for {suffix} with cells, found {base!r}; it is for closed surfaces")
             export(path, made, version=version, deck=deck, plane=plane)
             return
-        given: dict[str, Any] = {
-            "layers": layers,
-            "version": version,
-            "deck": deck,
-            "plane": plane,
-            "cells": cells,
-            "order": None if order == 1 else order,
-        }
+        given: dict[str, Any] = {"layers": layers, "version": version, "deck": deck, "plane": plane, "cells": cells}
+        given["order"] = None if order == 1 else order
         for name, value in given.items():
             if value is not None:
                 raise ParameterError(f"{name}: expected to be left out for {suffix}, found {value!r}; it is for {', '.join(EXPORTS)}")

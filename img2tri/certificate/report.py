@@ -25,6 +25,7 @@ from img2tri.certificate.topology_and_defects import DEFECTS, defects, neighbour
 from img2tri.types import Frame, Provenance
 
 PLACES = 20  # listed at most
+LISTED = 5  # warnings and notes in a report as it is printed
 
 
 @dataclass(frozen=True)
@@ -105,6 +106,22 @@ class Report:
     removed: dict[str, Any]
     notes: list[str]
     warnings: list[str]
+
+    def __repr__(self) -> str:
+        kept = "every promise kept" if self.kept else f"{len(self.warnings)} not kept of what was promised"
+        changed = sum(entry["found"] != entry["expected"] for entry in self.topology.values())
+        area = max((abs(entry["error"]) for entry in self.areas.values()), default=0.0)
+        rows = {
+            "distance": f"{self.hausdorff:.4g}" + (f" of at most {self.tolerance:.4g}" if self.tolerance else ""),
+            "smallest angle": f"{self.smallest_angle:.1f}" + (f" of at least {self.min_angle:g} degrees" if self.min_angle else " degrees"),
+            "areas": f"within {100 * area:.2g} % of those of the image",
+            "topology": f"{changed} of {len(self.topology)} regions differ from the image" if changed else "as in the image",
+            "defects": str(sum(getattr(self, name) for name in DEFECTS)),
+        }
+        lines = [f"Report: {self.n_triangles} triangles, {self.n_vertices} vertices, {kept}"]
+        lines += [f"{name:<16}{words}" for name, words in rows.items()]
+        lines += [f"{word:<16}{line}" for word, told in (("not kept", self.warnings), ("noted", self.notes)) for line in told[:LISTED]]
+        return "\n".join(lines)
 
     def _repr_html_(self) -> str:
         """Return the table of promises for a notebook."""

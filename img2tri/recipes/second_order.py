@@ -50,6 +50,12 @@ class SecondOrder:
     triangles: Ints
     regions: Ints
 
+    def __repr__(self) -> str:
+        (x0, y0), (x1, y1) = self.nodes.min(axis=0), self.nodes.max(axis=0)
+        regions = len(np.unique(self.regions))
+        counts = f"{len(self.triangles)} quadratic triangles, {len(self.nodes)} nodes, {regions} region{'s' * (regions != 1)}"
+        return f"SecondOrder: {counts}, {x0:g} <= x <= {x1:g}, {y0:g} <= y <= {y1:g}"
+
 
 def second_order(vertices: Floats, triangles: Ints, regions: Ints, frame: Frame, origin: Provenance | None = None) -> SecondOrder:
     """Give a mesh nodes in the middle of its edges, and curved sides along its outlines.

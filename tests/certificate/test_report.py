@@ -469,3 +469,14 @@ def test_areas_are_promised_unless_they_need_not_be_kept():
     assert free.kept
     assert not free.areas_off
     assert abs(mesh_image(disc, edge_length=12, tolerance="1px").report.areas[1]["error"]) < 0.01
+
+
+def test_what_a_prompt_shows_is_a_short_table(shapes):
+    lines = repr(shapes.report).splitlines()
+    assert lines[0] == f"Report: {len(shapes.triangles)} triangles, {len(shapes.vertices)} vertices, every promise kept"
+    assert [line[:16].strip() for line in lines[1:]] == ["distance", "smallest angle", "areas", "topology", "defects"]
+    assert lines[1].split()[1:] == [f"{shapes.report.hausdorff:.4g}", "of", "at", "most", "0.5"]
+    bad = dataclasses.replace(shapes.report, warnings=[f"warning {i}" for i in range(99)], notes=["a note"])
+    lines = repr(bad).splitlines()
+    assert lines[0].endswith("99 not kept of what was promised")
+    assert lines[-2:] == ["not kept        warning 4", "noted           a note"]

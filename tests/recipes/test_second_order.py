@@ -178,3 +178,10 @@ def test_poisson_on_a_disc(image, most, kink):
         assert worst < kink
         if edge_length == 16:
             assert solved(straight.nodes, straight.triangles)[0] > 10 * energy
+
+
+def test_what_a_prompt_shows_is_one_line():
+    mesh = mesh_image(specimens.disc(30, 10), edge_length=5)
+    made = mesh.second_order()
+    shown = f"SecondOrder: {len(mesh.triangles)} quadratic triangles, {len(made.nodes)} nodes, 1 region, "
+    assert repr(made).startswith(shown)

@@ -144,6 +144,9 @@ class Quality:
         heads = "".join(f"<th>{key}</th>" for key in ("", "min", "1 %", "mean", "99 %", "max", ""))
         return f"<table><caption>{str(self).partition(chr(10))[0]}</caption><tr>{heads}</tr>{''.join(rows)}</table>"
 
+    def __repr__(self) -> str:
+        return str(self)
+
     def __str__(self) -> str:
         head = f"{self._number} triangles"
         head += f", {self.turned_over} turned over" if self.turned_over else ""

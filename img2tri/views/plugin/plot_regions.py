@@ -13,6 +13,7 @@ import numpy as np
 from img2tri.errors import MeshError
 from img2tri.views.figures.region_colours import region_colours
 from img2tri.views.plugin.dataset_to_cells import written_about
+from img2tri.views.plugin.slices import VIEWS, normal_of
 
 if TYPE_CHECKING:
     import pyvista
@@ -52,7 +53,8 @@ def plot_regions(dataset: Any, plotter: pyvista.Plotter | None = None, **options
     colours = np.array(region_colours(labels.tolist(), known), np.uint8)
     copy = dataset.copy(deep=False)
     copy.cell_data["region_rgb"] = colours[index]
-    flat = dataset.bounds[5] == dataset.bounds[4]
+    axis = normal_of(np.asarray(dataset.points))
+    flat = np.ptp(np.asarray(dataset.points)[:, axis]) == 0
     shown = pyvista.Plotter() if plotter is None else plotter
     shown.add_mesh(copy, **{"scalars": "region_rgb", "rgb": True, "show_edges": True, "edge_opacity": 0.4, "lighting": not flat, **options})
     if len(labels) <= _LEGEND:
@@ -61,5 +63,5 @@ def plot_regions(dataset: Any, plotter: pyvista.Plotter | None = None, **options
     if plotter is not None:
         return plotter
     if flat:
-        shown.view_xy()  # type: ignore[call-arg]
+        getattr(shown, VIEWS[axis])()
     return shown.show()

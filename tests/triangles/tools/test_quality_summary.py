@@ -225,3 +225,9 @@ def test_arguments_are_not_changed():
     assess(v, t, list(METRICS))
     assert (v == before[0]).all()
     assert (t == before[1]).all()
+
+
+def test_what_a_prompt_shows_is_the_table():
+    quality = assess([[0, 0], [1, 0], [0, 1]], [[0, 1, 2]])
+    assert repr(quality) == str(quality)
+    assert len(repr(assess(*any_triangles(6, 2000)))) < 1000
