@@ -14,7 +14,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from typing import Any
 
 from img2tri.cli.job import Job
-from img2tri.cli.save_arguments import save_options
+from img2tri.cli.save_arguments import of_image, save_options
 from img2tri.cli.stdin_stdout import DASH, STEM, check_stdin, check_stdout
 from img2tri.errors import FileError, ParameterError
 from img2tri.options import OPTIONS
@@ -96,10 +96,11 @@ def jobs_of(arguments: Namespace, images: Sequence[str]) -> list[Job]:
                     raise FileError(f"{option}: expected a file of its own, found {path!r}, which is in use for {owners[place]!r}")
                 owners[place] = image
             names[option].append(path)
+        mine = {suffix: of_image(given, stem(image)) for suffix, given in saved_with.items()}
         job = Job(
-            image, options, meshes=tuple((path, saved_with[_ending(path)]) for path in (*names["-o"], *names["--out-dir"])),
+            image, options, meshes=tuple((path, mine[_ending(path)]) for path in (*names["-o"], *names["--out-dir"])),
             plot=next(iter(names["--plot"]), None), colour_by=None if arguments.colour_by == "none" else arguments.colour_by,
-            report=next(iter(names["--report"]), None), sent=sent, sent_with=saved_with[sent] if sent else {}, quiet=arguments.quiet,
+            report=next(iter(names["--report"]), None), sent=sent, sent_with=mine[sent] if sent else {}, quiet=arguments.quiet,
         )  # fmt: skip
         jobs.append(job)
     return jobs

@@ -79,7 +79,7 @@ def _made(job: Job, progress: Progress) -> Outcome:
     with _forewarned() as told:
         mesh = mesh_image(image, progress=progress, **job.options)
     for path, given in job.meshes:
-        mesh.save(path, **given)
+        mesh.save(path, **_with_arrays(mesh, given))
     if job.plot:
         mesh.plot(meshed_pixels(image, job.options), job.plot, colour_by=job.colour_by)
     if job.report:
@@ -170,8 +170,15 @@ def _of(options: dict[str, Any], *names: str) -> dict[str, Any]:
 def _bytes(mesh: TriangleMesh, suffix: str, given: dict[str, Any]) -> bytes:
     """Return a mesh as the bytes of a file."""
     with named(suffix) as path:
-        mesh.save(path, **given)
+        mesh.save(path, **_with_arrays(mesh, given))
         return path.read_bytes()
+
+
+def _with_arrays(mesh: TriangleMesh, given: dict[str, Any]) -> dict[str, Any]:
+    """Return the options of saving with arrays in place of the images these are read from."""
+    if "data" not in given:
+        return given
+    return {**given, "data": {name: mesh.sample(image) for name, image in given["data"].items()}}
 
 
 # ---- what there is to say ----

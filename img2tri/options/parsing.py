@@ -80,6 +80,31 @@ def length_by_label(given: str) -> str | dict[int, str]:
     return dict(map(label_and_value, given.split(","))) if "=" in given else given
 
 
+def height_by_label(given: str) -> float | dict[int, float]:
+    """Return one number, or numbers by label.
+
+    Examples
+    --------
+    >>> height_by_label("2.5"), height_by_label("1=2,#dc2828=5")
+    (2.5, {1: 2.0, 14428200: 5.0})
+    """
+    return {label: number(text) for label, text in map(label_and_value, given.split(","))} if "=" in given else number(given)
+
+
+def name_and_file(given: str) -> tuple[str, str]:
+    """Return the name of an array and the file it is read from.
+
+    Examples
+    --------
+    >>> name_and_file("HU=slice.png")
+    ('HU', 'slice.png')
+    """
+    name, _, path = given.partition("=")
+    if not (name and path):
+        raise ArgumentTypeError(f"expected a name, =, and an image, as in HU=slice.png, found {given!r}")
+    return name, path
+
+
 def all_or_labels(given: str) -> bool | list[int]:
     """Return True for "all", or labels between commas."""
     return True if given == "all" else list(map(label_number, given.split(",")))

@@ -291,6 +291,24 @@ def test_files_are_those_of_the_library(disc, tmp_path):
         assert typed_path.read_bytes() == path.read_bytes(), suffix
 
 
+def test_heights_by_label_a_plate_and_arrays_are_those_of_the_library(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    labels = np.full((20, 30), 1, np.uint8)
+    labels[:, 15:] = 2
+    Image.fromarray(labels).save("two.png")
+    Image.fromarray(np.arange(600, dtype=np.uint16).reshape(20, 30)).save("two_heat.png")
+    mesh = mesh_image("two.png", labels=True, edge_length=6.0)
+    typed = ["mesh", "two.png", "--labels", "--edge-length", "6", "--quiet"]
+    assert main([*typed, "-o", "typed.stl", "--height", "1=2,2=5", "--base", "1.5"]) == 0
+    mesh.save("mesh.stl", {1: 2, 2: 5}, base=1.5)
+    assert main([*typed, "-o", "typed.vtu", "--data", "T={stem}_heat.png", "--data", "U=two.png"]) == 0
+    mesh.save("mesh.vtu", data={"T": mesh.sample("two_heat.png"), "U": mesh.sample("two.png")})
+    assert main([*typed, "-o", "typed.xdmf", "--height", "3", "--cells", "tetrahedra"]) == 0
+    mesh.save("mesh.xdmf", 3, cells="tetrahedra")
+    for suffix in (".stl", ".vtu", ".xdmf"):
+        assert Path(f"typed{suffix}").read_bytes() == Path(f"mesh{suffix}").read_bytes(), suffix
+
+
 def test_height_gives_a_closed_solid(disc, tmp_path):
     flat, solid = tmp_path / "flat.stl", tmp_path / "solid.stl"
     assert main(["mesh", disc, "-o", str(flat), "--quiet"]) == 0
@@ -557,6 +575,11 @@ BAD_INPUT = {
     "order": (["DISC", "-o", "a.msh", "--order", "3"], "--order: expected 1 or 2, found 3"),
     "options": (["DISC", "--options", "TEXT"], "'text.png': expected a report or options as JSON"),
     "height": (["DISC", "--height", "0"], "--height: expected a number above 0, found 0"),
+    "height of a region": (["DISC", "--height", "1=0"], "height of 1: expected a number above 0, found 0"),
+    "heights for solvers": (["DISC", "-o", "a.msh", "--height", "1=2"], "--height: expected one for solvers, found one for each region"),
+    "base of a flat mesh": (["DISC", "-o", "a.stl", "--base", "2"], "--base: expected with --height, which makes a solid, found none"),
+    "base for solvers": (["DISC", "-o", "a.msh", "--height", "2", "--base", "2"], "--base: expected with a mesh that ends in .stl"),
+    "data for an STL": (["DISC", "-o", "a.stl", "--data", "T=DISC"], "--data: expected with a mesh that ends in .ply, .vtp"),
     "suffix": (["DISC", "-o", "a.dwg"], "a.dwg: expected a name that ends in .3mf, .bdf"),
     "suffix of the figure": (["DISC", "--plot", "a.stl"], "a.stl: expected a name that ends in .pdf, .png or .svg"),
     "suffix of the report": (["DISC", "--report", "a.txt"], "a.txt: expected a name that ends in .json"),

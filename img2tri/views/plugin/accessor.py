@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
     import img2tri
     from img2tri.views.objects.sets.named_sets import Sets
+
+D = TypeVar("D")
 
 _NO_IMAGE = (1, 1)
 
@@ -242,10 +244,11 @@ class SurfaceAccessor(MeshAccessor):
         return remember(smooth, replace(mesh, origin=self._made[0].origin)) if self._made else smooth
 
 
-def remember(dataset: Any, made: img2tri.TriangleMesh) -> Any:
-    """Let a dataset know the mesh it was made of, for its report; return it."""
+def remember(dataset: D, made: Any) -> D:
+    """Let a dataset know the `img2tri.TriangleMesh` it was made of, for its report; return it."""
     if made.origin is not None:
-        dataset.img2tri._made = made, _state(dataset)
+        known: Any = dataset
+        known.img2tri._made = made, _state(dataset)
     return dataset
 
 
