@@ -25,7 +25,7 @@ from img2tri.certificate.topology_and_defects import DEFECTS, defects, neighbour
 from img2tri.types import Frame, Provenance
 
 PLACES = 20  # listed at most
-LISTED = 5  # warnings and notes in a report as it is printed
+PRINTED = 5  # warnings and notes in a report as it is printed
 
 
 @dataclass(frozen=True)
@@ -120,7 +120,7 @@ class Report:
         }
         lines = [f"Report: {self.n_triangles} triangles, {self.n_vertices} vertices, {kept}"]
         lines += [f"{name:<16}{words}" for name, words in rows.items()]
-        lines += [f"{word:<16}{line}" for word, told in (("not kept", self.warnings), ("noted", self.notes)) for line in told[:LISTED]]
+        lines += [f"{word:<16}{line}" for word, told in (("not kept", self.warnings), ("noted", self.notes)) for line in told[:PRINTED]]
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
