@@ -1,4 +1,4 @@
-"""What each tuning constant of the outlines is worth: halve it, double it, and see which measures move.
+"""What each tuning constant of shapes, recipes and mesh tools is worth: halve it, double it, and see which measures move.
 
 In: the package that Python imports. Out: a table of constants, and of measures that change by more than `SHOWN` of themselves.
 
@@ -14,23 +14,39 @@ import warnings
 
 import numpy as np
 import specimens
-from benchmarks.shapes import blob
+from benchmarks.shapes import blob, gear
 
+import img2tri.recipes
 import img2tri.shapes
+import img2tri.triangles.tools
 from img2tri import mesh_image
 from img2tri.shapes.place.placement import place_outlines
 from img2tri.shapes.trace.crack_edges import find_crack_edges
 from img2tri.types import Frame
 
 SHOWN = 0.02
-MODULES = [importlib.import_module(found.name) for found in pkgutil.walk_packages(img2tri.shapes.__path__, "img2tri.shapes.")]
+ROOMS = (img2tri.shapes, img2tri.recipes, img2tri.triangles.tools)
+MODULES = [importlib.import_module(found.name) for room in ROOMS for found in pkgutil.walk_packages(room.__path__, f"{room.__name__}.")]
 Y, X = np.mgrid[:128, :128] + 0.5
 GRAY = np.rint(255 * np.clip(40.3 - np.hypot(X - 61.2, Y - 66.7) + 0.5, 0, 1)).astype(np.uint8)
+RNG = np.random.default_rng(1)
+NOISY = np.clip(GRAY + RNG.normal(0, 25, GRAY.shape), 0, 255).astype(np.uint8)
+SCANNED = (gear(9, 110, 0.2) * 180 + RNG.integers(0, 9, (110, 110))).astype(np.uint8)  # hard edges, a little noise
+COLOURED = np.where(X[..., None] < 64.3, (200, 30, 30), (30, 30, 200))
+DRAWING = np.rint(GRAY[..., None] / 255 * COLOURED + 255 - GRAY[..., None]).astype(np.uint8)
 IMAGES = {
     "blob": (blob(128, seed=4, holes=2).astype(np.uint8), {"edge_length": 7}),
     "thin": ((specimens.disc(80, 35.1) - specimens.disc(80, 31.9)).astype(np.uint8), {"edge_length": 7, "elements_across": 2}),
     "grains": (specimens.polycrystal(90, 14, 3), {"labels": True, "edge_length": 7}),
     "noise": (np.random.default_rng(0).integers(0, 2, (24, 27)).astype(np.uint8), {"edge_length": 5}),
+    "gear": (gear(9, 110, 0.2), {"edge_length": 6}),
+    "specks": (np.kron(RNG.integers(0, 3, (14, 14)), np.ones((4, 4), int)), {"labels": True, "edge_length": 8}),
+    "noisy gray": (NOISY, {"edge_length": 6, "largest": True}),
+    "scanned": (SCANNED, {"edge_length": 6, "labels": False}),
+    "drawing": (DRAWING, {"edge_length": 6, "colors": 3}),
+    "poisson": (specimens.disc(70, 28.2), {"edge_length": 6, "interior": "poisson"}),
+    "smoothed": (blob(90, seed=2, holes=1).astype(np.uint8), {"edge_length": 5, "smoothing": "cotangent"}),
+    "symmetric": (specimens.ellipse(80, (31.0, 19.0)), {"edge_length": 6, "symmetric": "xy"}),
     "turned": (specimens.rectangle(80, (50, 33), 27).astype(np.uint8), {"edge_length": 6}),
     "gray": (GRAY, {"edge_length": 6}),
     "graded": (specimens.disc(100, 40.3).astype(np.uint8), {"edge_length": lambda p: 3 + 0.08 * abs(p[:, 0]), "segments_per_turn": 40}),
