@@ -8,6 +8,6 @@ app_page      The viewer's page with the knobs beside it.
 server        The app: a page and its answers, on this machine only; fetching.js asks it.
 explore       The notebook: a widget whose `mesh` is the present one; widget.js asks its kernel.
 
-Beside them: knobs.html and knobs.css, what stands beside the viewer; knobs.js, what the knobs do. The viewer itself is that of
-`img2tri.views.page`.
+Beside them: knobs.html and knobs.css, what stands beside the viewer; knob_panel.js, what the knobs show, and knobs.js, what they do. The
+viewer itself is that of `img2tri.views.page`.
 """

@@ -45,4 +45,4 @@ def body(foot: str) -> str:
 
 def scripts(last: str) -> str:
     """Return the scripts, the last of which asks and begins."""
-    return "".join([*map(resource, SCRIPTS), own("knobs.js"), own(last)])
+    return "".join([*map(resource, SCRIPTS), own("knob_panel.js"), own("knobs.js"), own(last)])

@@ -81,6 +81,13 @@ def measures() -> dict[str, float]:
     return found
 
 
+def _is_number(value: object) -> bool:
+    """Tell a number, or several of them; switches are none."""
+    if isinstance(value, tuple):
+        return len(value) > 0 and all(_is_number(one) for one in value)
+    return isinstance(value, int | float | np.floating) and not isinstance(value, bool)
+
+
 def tried(name: str, factor: float) -> dict[str, float] | str:
     """Measure with one constant multiplied, in every module that has it."""
     homes = [module for module in MODULES if name in vars(module)]
@@ -98,8 +105,7 @@ def tried(name: str, factor: float) -> dict[str, float] | str:
 
 
 def main(names: list[str]) -> None:
-    kinds = (int, float, tuple, np.floating)
-    every = {name for module in MODULES for name, value in vars(module).items() if name.isupper() and isinstance(value, kinds)}
+    every = {name for module in MODULES for name, value in vars(module).items() if name.isupper() and _is_number(value)}
     before = measures()
     print(", ".join(f"{key} {value:.3g}" for key, value in before.items()), flush=True)
     for name in names or sorted(every):

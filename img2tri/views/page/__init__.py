@@ -4,8 +4,8 @@ html_page      The mesh, its image and its certificate -> the file. Beside it: p
 html_tables    What the page says in words and tables: the certificate, as plain data -> pieces of HTML.
 histogram_svg  How many triangles have which quality: one number per triangle -> a chart as an SVG.
 packing        The mesh as bytes a browser takes for arrays.
-drawing.js     These bytes -> the mesh, and bitmaps of it; viewer.js moves and marks them; page.js is what is around it;
-               alone.js begins where all is in the page.
+drawing.js     These bytes -> the mesh, and bitmaps of it; camera.js is the part that is seen, viewer.js moves and marks it;
+               page.js is what is around it; alone.js begins where all is in the page.
 
 The app and the notebook (`img2tri.app`) show the same page with knobs.
 """

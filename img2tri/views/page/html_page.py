@@ -29,7 +29,7 @@ from img2tri.views.page import html_tables as tables
 from img2tri.views.page.histogram_svg import chart
 from img2tri.views.page.packing import LARGEST_ANGLE, packed_mesh
 
-SCRIPTS = ("drawing.js", "viewer.js", "page.js")
+SCRIPTS = ("drawing.js", "camera.js", "viewer.js", "page.js")
 POLICY = "default-src 'none'; img-src data: blob:; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
 BLANK = {
     "version": __version__, "title": "", "knobs": "", "python": "", "foot": "", "command": "", "verdict": "", "tiles": "", "warnings": "",

@@ -1,7 +1,7 @@
 "use strict";
-// The viewer: image, mask, one mesh or two beside each other, and marks, on one canvas; drag, wheel, pinch and keys move it.
+// The viewer: image, mask, one mesh or two beside each other, and marks, on one canvas; drag, wheel, pinch and keys move the camera.
 //
-// Lengths are pixels of the image, y down. While one moves, the last bitmap of a mesh is moved along, whatever its size; a new one is made when
+// While one moves, the last bitmap of a mesh is moved along, whatever its size; a new one is made when
 // the movement pauses. `root` is the document, or the shadow root the viewer stands in.
 
 const QUICK = 6;  // ms; a mesh that is drawn in less is drawn anew with every movement
@@ -9,8 +9,9 @@ const FILLS = { none: "None", region: "Region", quality: "Quality", angle: "Smal
 const LAYERS = { image: "Image", edges: "Edges", outline: "Outline" };
 const round = (value, digits = 3) => `${+value.toPrecision(digits)}`;
 
-class Viewer {
+class Viewer extends Camera {
   constructor(root) {
+    super();
     const $ = this.$ = id => root.getElementById(id);
     this.canvas = $("canvas"); this.screen = this.canvas.getContext("2d");
     this.look = { fill: "region", image: true, edges: true, outline: true, opacity: 0.72, selected: null };
@@ -27,9 +28,6 @@ class Viewer {
     new ResizeObserver(() => this.resized()).observe(this.canvas);
     this.set({});
   }
-
-  get mesh() { return this.layers[0].mesh; }
-  get dpr() { return Math.min(window.devicePixelRatio || 1, 2); }
 
   // ---- what is shown ----
 
@@ -213,41 +211,6 @@ class Viewer {
     if (this.fitted && this.view) this.fit();
     this.frame();  // at once, as the new size has emptied the canvas
     this.render();
-  }
-
-  /** All of the mesh or image, or a box, in the room between the tools above and what is below. */
-  fit(box = null) {
-    const w = this.canvas.clientWidth, h = this.canvas.clientHeight, [x0, y0, x1, y1] = box || this.mesh?.view.box || this.view.box || [0, 0, ...this.view.size];
-    const top = this.$("tools").offsetTop + this.$("tools").offsetHeight + 16, foot = 60;
-    this.fitted = !box;
-    this.zoom = Math.min(Math.max(w - 40, 40) / Math.max(x1 - x0, 1e-9), Math.max(h - top - foot, 100) / Math.max(y1 - y0, 1e-9), this.most());
-    this.x = (x0 + x1) / 2; this.y = (y0 + y1) / 2 + (foot - top) / 2 / this.zoom;
-  }
-
-  least() { return Math.min(this.canvas.clientWidth / this.view.size[0], this.canvas.clientHeight / this.view.size[1]) / 4; }
-  most() { return 4000; }
-
-  closer(factor, sx = this.canvas.clientWidth / 2, sy = this.canvas.clientHeight / 2) {
-    if (!factor) { this.spot = null; this.fit(); this.changed(); return; }
-    const next = Math.min(Math.max(this.zoom * factor, this.least()), this.most()), f = (1 / this.zoom - 1 / next);
-    this.x += (sx - this.canvas.clientWidth / 2) * f; this.y += (sy - this.canvas.clientHeight / 2) * f;
-    this.zoom = next; this.fitted = false;
-    this.changed();
-  }
-
-  moved(dx, dy) { this.x -= dx / this.zoom; this.y -= dy / this.zoom; this.fitted = false; this.changed(); }
-
-  /** What is seen, in pixels of the image: left, top, right, bottom. */
-  window() {
-    const w = this.canvas.clientWidth / 2 / this.zoom, h = this.canvas.clientHeight / 2 / this.zoom;
-    return [this.x - w, this.y - h, this.x + w, this.y + h];
-  }
-
-  world(x, y) { const { corner, pixel, upward, size } = this.view; return [corner[0] + x * pixel, corner[1] + (upward ? size[1] - y : y) * pixel]; }
-
-  inside(event) {
-    const box = this.canvas.getBoundingClientRect(), sx = event.clientX - box.left, sy = event.clientY - box.top;
-    return [sx, sy, this.x + (sx - box.width / 2) / this.zoom, this.y + (sy - box.height / 2) / this.zoom];
   }
 
   say(x, y, t) {
