@@ -16,7 +16,7 @@ from img2tri.triangles.generate.pslg import Pslg
 from img2tri.triangles.generate.quality_smoothing import patch_around, smooth, touching
 from img2tri.triangles.smallest_tangents import narrower
 
-PATCH_RINGS = (3, 3, 6, 12, 24, 1_000_000)  # how far patches reach around bad triangles, then around edges of the rim that were split
+PATCH_RINGS = (3, 3, 6, 6, 6, 12, 12, 24, 24, None)  # how far patches reach around bad triangles, then around split edges of the rim; None: to the end
 SHORTEST_EDGE = 0.05  # of the shortest segment in the patch: no edge becomes shorter. A stop only: sharp corners would be refined for ever
 
 
@@ -32,7 +32,7 @@ def refine_locally(
         return vertices, triangles, codes
     patch, cause = np.zeros(len(triangles), bool), bad
     for rings in PATCH_RINGS:
-        grown = patch | patch_around(cause, triangles, len(vertices), rings)[0]
+        grown = patch | (_component(cause, triangles) if rings is None else patch_around(cause, triangles, len(vertices), rings)[0])
         if np.array_equal(grown, patch):
             return None
         patch = grown
@@ -59,6 +59,21 @@ def refine_locally(
         np.concatenate([triangles[~patch], numbers[made.triangles]]),
         np.concatenate([codes[~patch], made.regions]),
     )
+
+
+def _component(chosen: Bools, triangles: Ints) -> Bools:
+    """Add to some triangles (m,) all that hang together with them through vertices."""
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import connected_components
+
+    m, size = len(triangles), len(triangles) + int(triangles.max()) + 1
+    # Triangles and vertices are the nodes of a graph, with a link from each triangle to each of its corners.
+    ends = np.minimum(np.arange(size + 1), m) * 3
+    graph = csr_array((np.ones(3 * m, np.int8), triangles.ravel() + m, ends), shape=(size, size))
+    number = connected_components(graph, directed=False)[1][:m]
+    hit = np.zeros(size, bool)
+    hit[number[chosen]] = True
+    return np.asarray(hit[number])
 
 
 def _patch_constraints(points: Points, inside: Ints, triangles: Ints, codes: Ints, constraints: Pslg, n_outline: int) -> tuple[Pslg, Bools]:
