@@ -38,9 +38,13 @@ SHORTEST_NARROW, SHORTEST_WIDE = 3, 11  # points: open chains with no more are n
 UNSMOOTHED = 4  # points that tell where a chain leads that is not smoothed
 AT_BOUND = 1e-9  # what lies so near to a bound lies there, up to rounding
 NO_STEP = 1e-12  # px, a step that changes nothing
+BATCH = 1 << 15  # points of chains smoothed at a time: what is laid out for them fits the cache, and takes little memory
 BENDS = 2  # how often a spline is bent towards the bounds it misses
 BEND, MOST_BEND = 0.75, 12.0  # of the scale: and places at most: how far to either side a bend reaches
 AREA_ROUNDS = 8  # of shifting chains for their area; two or three do
+
+
+Spline = SmoothingSpline | CurvatureSpline
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,63 +102,78 @@ class ChainEnds:
 
 def widest_fitting_spline(s: BoundedChains) -> tuple[Floats, ChainEnds]:
     """Return the shift of each point (n,) along its axis onto the smoothing spline of the widest scale that fits, and where chains lead."""
-    shift, level = np.zeros((len(NARROW + WIDE) + 1, len(s.points))), np.zeros(len(s.points), np.int64)
-    k, before = 0, np.zeros(len(s.chains.rings), bool)
-    ends = _unsmoothed_ends(s)
+    shift, level, ends = np.zeros((len(NARROW + WIDE) + 1, len(s.points))), np.zeros(len(s.points), np.int64), _unsmoothed_ends(s)
     size, rings = np.diff(s.chains.starts), s.chains.rings
-    for scales, least in ((NARROW, SHORTEST_NARROW), (WIDE, SHORTEST_WIDE)):
-        chosen = (size > np.where(rings, RING_SCALES * scales[0], least)) & s.movable
-        if not chosen.any():
-            break
-        if (chosen != before).any():
-            # Where both groups of scales are for the same chains, these are laid out once, with room for the wider one.
-            both = np.array_equal(chosen, (size > np.where(rings, RING_SCALES * WIDE[0], SHORTEST_WIDE)) & s.movable)
-            line = PaddedChains(s.chains, chosen, max(PADDING, _reach((WIDE if both else scales)[-1])))
-            narrow = SmoothingSpline(line, line.points(s.points))
-            before = chosen
-            # Where on the line the two ends of each open chain are.
-            node, opened = np.flatnonzero(line.node).reshape(-1, 2), np.flatnonzero(chosen & ~rings)
-            at, own, crossing = line.source, line.source[line.own], ~line.node
-            axis, low, high, misfit = line.sign * s.axis[at], s.low[at], s.high[at], MISFIT * s.slack[at] * np.abs(s.axis[at])
-        spline = narrow if scales is NARROW else CurvatureSpline(narrow, NARROW[-1])
-        for scale in scales:
-            off, direction = spline.smoothed(scale)
-            # Slide to the tangent of the spline.
-            across = cross(axis, direction)
-            steep = np.abs(across) > 1e-9
-            t = np.divide(cross(off, direction), across, out=np.zeros(len(at)), where=steep)[line.original]
-            bounded = np.clip(t, low, high)
-            # How far bounds are missed counts across the spline: along dual edges that run nearly as it does, it says little.
-            miss = (t - bounded) * across
-            fits = narrow.arc.farther_than((np.abs(miss) > misfit) & crossing, WINDOW * scale)
-            fits &= ~line.ring | (size[np.flatnonzero(chosen)[line.chain]] > RING_SCALES * scale)
-            bent = fits & crossing
-            for _ in range(BENDS):
-                miss *= bent
-                if not miss.any():
-                    break
-                t -= np.divide(fade_out(line, miss, _bend(scale)), across, out=np.zeros(len(at)), where=steep)
-                bounded = np.clip(t, low, high)
-                miss = (t - bounded) * across
-            k += 1
-            shift[k, own] = np.where(line.node & (scale < FREE_ENDS), 0, bounded)[line.own]
-            level[own[fits[line.own]]] = k
-            chain, end = np.nonzero(fits[node])
-            there, of = node[chain, end], opened[chain]
-            ends.place[of, end] = (narrow.points + off)[there]
-            ends.direction[of, end] = direction[there]
-            ends.scale[of, end] = scale
+    able = [
+        s.movable & (size > np.where(rings, RING_SCALES * scales[0], least))
+        for scales, least in ((NARROW, SHORTEST_NARROW), (WIDE, SHORTEST_WIDE))
+    ]
+    batch = np.cumsum(size) // BATCH
+    for number in np.unique(batch).tolist():
+        narrow, wide = (chosen & (batch == number) for chosen in able)
+        if not narrow.any():
+            continue
+        # Where both groups of scales are for the same chains, these are laid out once, with room for the wider one.
+        same = np.array_equal(narrow, wide)
+        laid = _LaidOut(s, narrow, (WIDE if same else NARROW)[-1])
+        for k, scale in enumerate(NARROW, 1):
+            laid.fit(k, scale, laid.narrow, shift[k], level, ends)
+        if wide.any():
+            laid = laid if same else _LaidOut(s, wide, WIDE[-1])
+            spline = CurvatureSpline(laid.narrow, NARROW[-1])
+            for k, scale in enumerate(WIDE, len(NARROW) + 1):
+                laid.fit(k, scale, spline, shift[k], level, ends)
     return _blend(shift, level, s), ends
+
+
+class _LaidOut:
+    """Some chains laid out on a line, their narrow splines, and the bounds of their points there."""
+
+    def __init__(self, s: BoundedChains, chosen: Bools, widest: float) -> None:
+        """Lay out the chosen (c,) chains, with padding for scales up to the widest."""
+        line = self.line = PaddedChains(s.chains, chosen, max(PADDING, math.ceil(3 * _bend(widest)) + 2))
+        self.narrow = SmoothingSpline(line, line.points(s.points))
+        self.axis, self.low, self.high = line.sign * s.axis[line.source], s.low[line.source], s.high[line.source]
+        self.misfit = MISFIT * s.slack[line.source] * np.abs(self.axis)
+        which = np.flatnonzero(chosen)
+        self.size = np.where(line.ring, np.diff(s.chains.starts)[which[line.chain]], np.inf)
+        # Where on the line the two ends of each open chain are.
+        self.node, self.opened = np.flatnonzero(line.node).reshape(-1, 2), which[~s.chains.rings[which]]
+
+    def fit(self, k: int, scale: float, spline: Spline, shift: Floats, level: Ints, ends: ChainEnds) -> None:
+        """Slide to the spline of one scale: write shifts (n,), k to the level (n,) of points where it fits, and where chains end."""
+        line, axis, low, high = self.line, self.axis, self.low, self.high
+        off, direction = spline.smoothed(scale)
+        # Slide to the tangent of the spline.
+        across = cross(axis, direction)
+        steep, nothing = np.abs(across) > 1e-9, np.zeros(len(axis))
+        t = np.divide(cross(off, direction), across, out=nothing.copy(), where=steep)[line.original]
+        bounded = np.clip(t, low, high)
+        # How far bounds are missed counts across the spline: along dual edges that run nearly as it does, it says little.
+        miss = (t - bounded) * across
+        fits = self.narrow.arc.farther_than((np.abs(miss) > self.misfit) & ~line.node, WINDOW * scale)
+        fits &= self.size > RING_SCALES * scale
+        bent = fits & ~line.node
+        for _ in range(BENDS):
+            miss *= bent
+            if not miss.any():
+                break
+            t -= np.divide(fade_out(line, miss, _bend(scale)), across, out=nothing.copy(), where=steep)
+            bounded = np.clip(t, low, high)
+            miss = (t - bounded) * across
+        own = line.source[line.own]
+        shift[own] = np.where(line.node & (scale < FREE_ENDS), 0, bounded)[line.own]
+        level[own[fits[line.own]]] = k
+        chain, end = np.nonzero(fits[self.node])
+        there, of = self.node[chain, end], self.opened[chain]
+        ends.place[of, end] = (self.narrow.points + off)[there]
+        ends.direction[of, end] = direction[there]
+        ends.scale[of, end] = scale
 
 
 def _bend(scale: float) -> float:
     """How far to either side a spline of this scale is bent towards a bound it misses, in places."""
     return min(BEND * scale, MOST_BEND)
-
-
-def _reach(scale: float) -> int:
-    """How much padding bending takes."""
-    return math.ceil(3 * _bend(scale)) + 2
 
 
 def _unsmoothed_ends(s: BoundedChains) -> ChainEnds:
