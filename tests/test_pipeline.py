@@ -129,6 +129,7 @@ def test_image_data_on_points_reach_half_a_pixel_further():
 # ---- what each option changes ----
 
 WRAPPED = np.pad(GRAINS, ((0, 1), (0, 1)), mode="wrap")
+WAVES = np.abs(np.arange(-20, 20)[:, None] + 6 * np.sin(np.arange(2300) / 15)) < 12
 CHANGES = {
     "recipe": (UNEVEN * 255, {"recipe": "conforming"}, {"recipe": "structured"}, {"recipe": "unstructured"}),
     "threshold": (RAMP, {"threshold": 100}, {"threshold": 140}, {"threshold": "otsu"}),
@@ -143,6 +144,7 @@ CHANGES = {
     "symmetric": (np.pad(np.ones((9, 12), bool), 3), {}, {"symmetric": "x"}, {"symmetric": "y"}),
     "periodic": (WRAPPED, {"labels": True}, {"labels": True, "periodic": "x"}, {"labels": True, "periodic": "y"}),
     "interior": (UNEVEN, {}, {"interior": "poisson"}),
+    "blocks": (WAVES, {}, {"blocks": True}),
     "gradation": (SHAPES, {"boundary_edge_length": 2, "edge_length": 12}, {"boundary_edge_length": 2, "edge_length": 12, "gradation": 1}),
     "boundary_edge_length": (UNEVEN, {"edge_length": 8}, {"edge_length": 8, "boundary_edge_length": 3}),
     "min_edge_length": (UNEVEN, {"segments_per_turn": 60}, {"segments_per_turn": 60, "min_edge_length": 3}),

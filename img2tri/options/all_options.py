@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast, get_args, get_type_hints
 from img2tri.errors import FileError, ParameterError, UnknownOptionError
 from img2tri.options.image_options import NameOptions, PartOptions, ReadOptions, SegmentOptions, SpeckOptions, WidthOptions
 from img2tri.options.mesh_options import (
+    BlockOptions,
     FillOptions,
     OutlineOptions,
     RecipeOptions,
@@ -36,7 +37,7 @@ G = TypeVar("G")
 
 class MeshOptions(
     RecipeOptions, ReadOptions, WidthOptions, PartOptions, SegmentOptions, SpeckOptions, NameOptions, OutlineOptions, SymmetryOptions,
-    SizeOptions,
+    SizeOptions, BlockOptions,
     ToleranceOptions, FillOptions, SmoothOptions, PaperOptions, total=False,
 ):  # fmt: skip
     """Every option of `mesh_image`, for functions that hand them on: ``**options: Unpack[MeshOptions]``."""
@@ -46,7 +47,16 @@ class MeshOptions(
 HEADINGS: dict[str, tuple[Any, ...]] = {
     "what is meshed": (SegmentOptions, SpeckOptions, PartOptions),
     "where it lies": (ReadOptions, WidthOptions, NameOptions),
-    "how it is meshed": (RecipeOptions, OutlineOptions, SymmetryOptions, SizeOptions, ToleranceOptions, FillOptions, SmoothOptions),
+    "how it is meshed": (
+        RecipeOptions,
+        OutlineOptions,
+        SymmetryOptions,
+        SizeOptions,
+        BlockOptions,
+        ToleranceOptions,
+        FillOptions,
+        SmoothOptions,
+    ),
     "the paper's recipes only": (PaperOptions,),
 }
 

@@ -82,6 +82,21 @@ class SymmetryOptions(TypedDict, total=False):
     ]
 
 
+class BlockOptions(TypedDict, total=False):
+    """Options of `tiles.blocks_in_memory.conform_blocks`."""
+
+    blocks: Annotated[
+        bool,
+        Option(
+            False,
+            "Mesh the image in blocks of 2048 px, each fitted to its neighbours: the same bits as `mesh_tiles`.\n\n"
+            "A change of the image then changes the mesh in its block and those around only. Takes up to twice the time; images of one "
+            "block are as without.",
+            check=o.yes_or_no,
+        ),
+    ]
+
+
 class SizeOptions(TypedDict, total=False):
     """Options of `recipes.conforming.wanted_sizes`."""
 

@@ -4,9 +4,11 @@
     pixel_source       the file or array the pixels come from, read window by window
     first_pass         what has to be known of the whole image: level, default edge length, a hash of all pixels -> the plan
     block_plan         the grid of blocks, their order in four colours, their territories; what each is meshed by
+    blocks_in_memory   an image in memory by the same blocks: the same bits
+    window_regions     the regions in a window, read or cut out
     mesh_block         the work of one task: a block is meshed with what is around it, and fitted to the pieces that are there
     seams              two neighbours fitted to each other: pieces, what is merged, gaps that are filled
-    piece_files        pieces on disk, whole or not there, from which an interrupted run goes on
+    piece_files        pieces on disk, whole or not there, from which an interrupted run goes on; or in memory
     seam_matching      the proof that each seam edge has one partner, and from it the numbers of vertices in the whole mesh
     save_parts         the mesh in files of parts: zarr, .pvtu, .vtkhdf; and read back
 

@@ -18,6 +18,9 @@ from typing import Any
 import numpy as np
 
 from img2tri.arrays import Bools, Floats, Points
+from img2tri.errors import ParameterError
+from img2tri.options.all_options import OPTIONS
+from img2tri.recipes.conforming import USUAL_TRIANGLES
 from img2tri.tiles.seams.both_meshes import Territory
 from img2tri.tiles.seams.merge_pieces import TAKEN
 from img2tri.types import Frame
@@ -26,6 +29,15 @@ BLOCK_SIDE = 2048  # px, the least side of a block
 MARGIN_EDGES = 8.0  # edge lengths: how far beyond its block a mesh is looked at, to fit those of the neighbours
 SMOOTHED = 32  # px more, so that the ends of outlines at the frame of a window do not matter
 LEAST_BLOCK = 4.0  # margins
+DEFAULT_SHORTEST, DEFAULT_LONGEST = 4.0, 64.0  # px
+LENGTH_OPTIONS = ("tolerance", "min_edge_length", "boundary_edge_length")
+REFUSED_BY_BLOCKS = {
+    "recipe": "the paper's recipes take the image as a whole",
+    "periodic": "opposite sides are never in one window",
+    "interior": "scattered points take the image as a whole",
+    "smoothing": "smoothing moves all vertices at once",
+    "symmetric": "both halves are never in one window",
+}
 
 Cell = tuple[int, int]
 
@@ -67,6 +79,10 @@ class Plan:
         """All blocks, row by row."""
         rows, columns = self.grid
         return ((i, j) for i in range(rows) for j in range(columns))
+
+    def in_order(self) -> Iterator[Cell]:
+        """All blocks, colour by colour."""
+        return (cell for one in range(4) for cell in self.cells() if colour(cell) == one)
 
     def neighbours(self, cell: Cell) -> list[Cell]:
         """Return the up to eight blocks around a block."""
@@ -126,3 +142,38 @@ def block_size(margin: float) -> int:
     while side < LEAST_BLOCK * margin:
         side *= 2
     return side
+
+
+def refuse_by_blocks(o: dict[str, Any]) -> None:
+    """Refuse what an image cannot have that is meshed block by block."""
+    for name, why in REFUSED_BY_BLOCKS.items():
+        if o[name] != OPTIONS[name].default:
+            raise ParameterError(f"{name}: expected to be left out for an image by blocks, found {o[name]!r}; {why}")
+    if not (o["edge_length"] is None or isinstance(o["edge_length"], (str, int, float, dict))):
+        raise ParameterError("edge_length: expected one length, or lengths by label, for an image by blocks; a field takes it as a whole")
+
+
+def planned(
+    frame: Frame, options: dict[str, Any], meshed: int, *, level: float | None = None, gray: bool = False, place: float | None = None
+) -> Plan:
+    """Return how an image is meshed of which so many pixels are; lengths become numbers in world units.
+
+    The default edge length is that of an image in memory, but never so long that blocks of several would have to be larger.
+    """
+    o = dict(options)
+    for name in LENGTH_OPTIONS:
+        o[name] = None if o[name] is None else frame.length(name, o[name])
+    if isinstance(o["edge_length"], dict):
+        o["edge_length"] = {label: frame.length("edge_length", length) for label, length in o["edge_length"].items()}
+        longest = max(o["edge_length"].values()) / frame.pixel
+    elif o["edge_length"] is not None:
+        o["edge_length"] = frame.length("edge_length", o["edge_length"])
+        longest = o["edge_length"] / frame.pixel
+    else:
+        area = meshed * math.prod(frame.spacing) / frame.pixel**2
+        longest = max(DEFAULT_SHORTEST, math.sqrt(area / USUAL_TRIANGLES * 4 / math.sqrt(3)))
+        if max(frame.shape) > BLOCK_SIDE:
+            longest = min(longest, DEFAULT_LONGEST)
+            o["edge_length"] = longest * frame.pixel
+    margin = MARGIN_EDGES * longest
+    return Plan(frame, block_size(margin), margin, level, gray, place, o)

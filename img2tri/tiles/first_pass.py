@@ -11,6 +11,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,22 +20,15 @@ from img2tri import __version__
 from img2tri.errors import ImageError, ParameterError
 from img2tri.options.all_options import OPTIONS, checked, plain
 from img2tri.raster.labels.otsu_threshold import otsu_class
-from img2tri.tiles.block_plan import MARGIN_EDGES, Cell, Plan, block_size
+from img2tri.tiles.block_plan import Cell, Plan, planned, refuse_by_blocks
 from img2tri.tiles.pixel_source import PixelSource
 from img2tri.types import Frame
 
 REFUSED = {
-    "recipe": "the paper's recipes need the image in memory",
-    "periodic": "opposite sides are never in one window",
-    "interior": "scattered points need the image in memory",
-    "smoothing": "smoothing moves all vertices at once",
-    "symmetric": "both halves are never in one window",
     "crop": "slice the array instead",
     "min_area": "components may span tiles; clean the label map before",
     "largest": "components may span tiles; clean the label map before",
 }
-DEFAULT_TRIANGLES, DEFAULT_SHORTEST, DEFAULT_LONGEST = 2000, 4.0, 64.0  # as of an image in memory; px
-LENGTH_OPTIONS = ("tolerance", "min_edge_length", "boundary_edge_length")
 
 
 def checked_options(options: dict[str, Any]) -> dict[str, Any]:
@@ -43,10 +37,7 @@ def checked_options(options: dict[str, Any]) -> dict[str, Any]:
     for name, why in REFUSED.items():
         if o[name] != OPTIONS[name].default:
             raise ParameterError(f"{name}: expected to be left out for an image by tiles, found {o[name]!r}; {why}")
-    if not (o["edge_length"] is None or isinstance(o["edge_length"], (str, int, float, dict))):
-        raise ParameterError(
-            "edge_length: expected one length, or lengths by label, for an image by tiles; a field needs the image in memory"
-        )
+    refuse_by_blocks(o)
     if not (isinstance(o["labels"], bool) or o["labels"] is None) and o["background"] is None:
         raise ParameterError("background: expected a label for an image by tiles with a list of labels, found None")
     return o
@@ -85,17 +76,7 @@ def first_plan(source: PixelSource, options: dict[str, Any]) -> Plan:
     dx, dy = (1.0, 1.0) if spacing is None else (float(spacing),) * 2 if np.ndim(spacing) == 0 else (float(spacing[0]), float(spacing[1]))
     corner = (0.0, 0.0) if isinstance(o["origin"], str) else (float(o["origin"][0]), float(o["origin"][1]))
     frame = Frame(source.shape, (dx, dy), corner, upward=o["origin"] != "upper")
-    for name in LENGTH_OPTIONS:
-        o[name] = None if o[name] is None else frame.length(name, o[name])
-    if isinstance(o["edge_length"], dict):
-        o["edge_length"] = {label: frame.length("edge_length", length) for label, length in o["edge_length"].items()}
-        longest = max(o["edge_length"].values())
-    else:
-        given = o["edge_length"]
-        longest = DEFAULT_LONGEST * frame.pixel if given is None else frame.length("edge_length", given)
-        o["edge_length"] = None if given is None else longest
-    margin = MARGIN_EDGES * longest / frame.pixel
-    return Plan(frame, block_size(margin), margin, options=o)
+    return replace(planned(frame, o, math.prod(source.shape)), options=o)
 
 
 def decided(plan: Plan, source: PixelSource, found: list[dict[str, Any]]) -> Plan:
@@ -116,15 +97,7 @@ def decided(plan: Plan, source: PixelSource, found: list[dict[str, Any]]) -> Pla
     if not meshed:
         at = "" if level is None else f" above the threshold {level:g} ({how}); try another threshold=, or invert=True"
         raise ImageError(f"image: expected pixels to mesh, found none{at or ', only background; see background='}")
-    if o["edge_length"] is None:
-        # As in memory, but never so long that a block is too small for it.
-        area = meshed * math.prod(frame.spacing) / frame.pixel**2
-        usual = math.sqrt(area / DEFAULT_TRIANGLES * 4 / math.sqrt(3))
-        length = min(max(DEFAULT_SHORTEST, usual), DEFAULT_LONGEST)
-        o["edge_length"], margin = frame.pixel * length, MARGIN_EDGES * length
-    else:
-        margin = plan.margin
-    return Plan(frame, block_size(margin), margin, level, gray, place, o)
+    return planned(frame, o, meshed, level=level, gray=gray, place=place)
 
 
 def _level(dtype: np.dtype[Any], threshold: Any, found: list[dict[str, Any]]) -> tuple[float | None, bool, float | None, str]:

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from img2tri.arrays import Floats, Ints, Points, as_complex, as_rows, runs
 from img2tri.certificate.outline_distance import SAMPLE_STEP, SegmentSet
@@ -17,11 +15,11 @@ from img2tri.options.mesh_options import FillOptions, OutlineOptions, SizeOption
 from img2tri.raster.labels.segmentation import Segmentation
 from img2tri.recipes.conforming import conform, trace_outlines, wanted_sizes
 from img2tri.tiles.block_plan import SMOOTHED, Cell, Plan, colour
-from img2tri.tiles.piece_files import facts_of, load_piece, lost_name, packed, piece_path, write
-from img2tri.tiles.pixel_source import PixelSource
+from img2tri.tiles.piece_files import Lost, PieceStore, load_piece
 from img2tri.tiles.seams.both_meshes import Territory
 from img2tri.tiles.seams.merge_pieces import merge
 from img2tri.tiles.seams.piece_seams import Piece, SeamError, join_pieces
+from img2tri.tiles.window_regions import WindowRegions
 from img2tri.triangles.tools.topology import curve_edges
 from img2tri.types import Frame, Outlines
 
@@ -29,36 +27,45 @@ GROSS = 1.0  # px beside twice the tolerance: what no outline of the mesh is off
 MARGIN_SCALES = (1, 2, 4)  # of the margin: where pieces do not fit, more is looked at and replaced
 
 
-def mesh_block(plan: Plan, source: PixelSource, folder: Path, cell: Cell) -> dict[str, Any]:
-    """Mesh a block, keep its piece on disk, and return what is known of it; at once if it is there already.
+def mesh_block(plan: Plan, zones: WindowRegions, store: PieceStore, cell: Cell) -> dict[str, Any]:
+    """Mesh a block, keep its piece, and return what is known of it; at once if it is there already.
+
+    Parameters
+    ----------
+    plan, cell
+        How the image is meshed, and which block.
+    zones
+        Function of rows and columns that returns the regions there.
+    store
+        Where the pieces of its neighbours are, and its own is kept.
 
     Raises
     ------
     Img2triError
         Names the block.
     """
-    path = piece_path(folder, cell)
-    if path.exists():
-        return facts_of(path)
+    found = store.facts(cell)
+    if found is not None:
+        return found
     rows, columns = plan.window(cell, 0)
     try:
-        piece, lost, facts = _fitting(plan, source, folder, cell)
-        write(path, packed(piece, facts, **lost))
+        piece, lost, facts = _fitting(plan, zones, store, cell)
+        store.keep(cell, piece, lost, facts)
     except Img2triError as error:
         where = f"rows {rows.start} to {rows.stop}, columns {columns.start} to {columns.stop}"
         raise type(error)(f"{where}: {error}") from error
     return facts
 
 
-def _fitting(plan: Plan, source: PixelSource, folder: Path, cell: Cell) -> tuple[Piece, dict[str, Any], dict[str, Any]]:
+def _fitting(plan: Plan, zones: WindowRegions, store: PieceStore, cell: Cell) -> tuple[Piece, Lost, dict[str, Any]]:
     near = [other for other in plan.neighbours(cell) if colour(other) < colour(cell)]
-    loaded = [load_piece(folder, plan, other, colour(cell)) for other in near]
+    loaded = [load_piece(store, plan, other, colour(cell)) for other in near]
     within = plan.frame.length("tolerance", plan.options["tolerance"]) / plan.frame.pixel
     problem: SeamError | None = None
     for scale in MARGIN_SCALES:
         rows, columns = plan.window(cell, scale * plan.margin + SMOOTHED)
-        values = source.read(rows, columns)
-        mesh, outlines = window_mesh(values, plan, rows, columns)
+        window = zones(rows, columns)
+        mesh, outlines = window_mesh(window, plan, rows, columns)
         off, territory = _measure(outlines), plan.territory(cell, scale)
         parts = [_near(piece, territory) for piece, _ in loaded]
         finished = join_pieces([piece for piece, _ in parts])
@@ -70,18 +77,19 @@ def _fitting(plan: Plan, source: PixelSource, folder: Path, cell: Cell) -> tuple
         except SeamError as error:
             problem = error
             continue
-        lost, first = {}, 0
+        lost: Lost = {}
+        first = 0
         for other, (_, numbers), (_, kept) in zip(near, loaded, parts, strict=True):
             gone = replaced[first : first + len(kept)]
             first += len(kept)
             if gone.any():
-                lost[lost_name(other)] = numbers[kept[gone]]
+                lost[other] = numbers[kept[gone]]
         facts = {
             "cell": list(cell),
             "scale": scale,
             "replaced": int(replaced.sum()),
             "distance": distance,
-            **_pixels(values, plan, cell, rows, columns),
+            **_pixels(window, plan, cell, rows, columns),
         }
         return piece, lost, facts
     assert problem is not None, "there is a scale"
@@ -103,15 +111,15 @@ def _near(piece: Piece, territory: Territory) -> tuple[Piece, Ints]:
     return part, kept
 
 
-def _pixels(values: NDArray[Any], plan: Plan, cell: Cell, rows: slice, columns: slice) -> dict[str, Any]:
+def _pixels(window: Segmentation, plan: Plan, cell: Cell, rows: slice, columns: slice) -> dict[str, Any]:
     """Count what the certificate of the whole is to be compared with: pixels, and the Euler number of a mask, by bit quads (Gray 1971)."""
     own = plan.window(cell, 0)
     (h, w), top, left = ((s.stop - s.start for s in own), own[0].start - rows.start, own[1].start - columns.start)
-    zones = segmentation(values[top : top + h + 1, left : left + w + 1], plan)
-    if plan.options["labels"]:
-        meshed = zones.labels != zones.background if zones.background is not None else np.ones(zones.labels.shape, bool)
+    labels = window.labels[top : top + h + 1, left : left + w + 1]
+    if labels.dtype != bool:
+        meshed = labels != window.background if window.background is not None else np.ones(labels.shape, bool)
         return {"pixels": int(meshed[:h, :w].sum()), "euler": None}
-    m = np.asarray(zones.labels, bool)
+    m = labels
     across, down = m[:h, :-1] & m[:h, 1:], m[:-1, :w] & m[1:, :w]
     a, b, c, d = m[:-1, :-1], m[:-1, 1:], m[1:, :-1], m[1:, 1:]
     quads = int((a & b & c & d).sum())
@@ -152,24 +160,12 @@ def plan_world(plan: Plan, places: Points) -> Points:
     return np.asarray(world[:, 0] + 1j * world[:, 1])
 
 
-def segmentation(values: NDArray[Any], plan: Plan) -> Segmentation:
-    """Find the regions in a window."""
-    o = plan.options
-    if o["labels"]:
-        numbers = values.astype(np.int64) if values.dtype == np.uint64 else values
-        if o["labels"] is not True:
-            numbers = np.where(np.isin(numbers, o["labels"]), numbers, numbers.dtype.type(o["background"] or 0))
-        return Segmentation(numbers, o["background"])
-    mask = values if plan.level is None else values > plan.level
-    return Segmentation(~mask if o["invert"] else mask, 0, None, values if plan.gray else None, plan.place)
-
-
-def window_mesh(values: NDArray[Any], plan: Plan, rows: slice, columns: slice) -> tuple[Piece, tuple[Points, Outlines] | None]:
+def window_mesh(zones: Segmentation, plan: Plan, rows: slice, columns: slice) -> tuple[Piece, tuple[Points, Outlines] | None]:
     """Mesh a window, and return the mesh in the plane of the whole image, with its dense outlines; no outlines where nothing is meshed."""
-    zones, whole, o = segmentation(values, plan), plan.frame, cast(MeshOptions, plan.options)
+    whole, o = plan.frame, cast(MeshOptions, plan.options)
     if zones.background is not None and not (zones.labels != zones.background).any():
         return Piece.empty(), None
-    frame = Frame(values.shape[:2], whole.spacing, (0.0, 0.0), whole.upward)
+    frame = Frame(zones.labels.shape, whole.spacing, (0.0, 0.0), whole.upward)
     outlines, dual_edges = trace_outlines(zones, frame, connectivity=o["connectivity"], **of(OutlineOptions, o))
     sizes = wanted_sizes(labels=zones.labels, dual_edges=dual_edges, frame=frame, **of(SizeOptions, o))
     within = frame.length("tolerance", o["tolerance"]) / frame.pixel

@@ -16,22 +16,24 @@ import os
 import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from img2tri.arrays import as_rows
+from img2tri.arrays import Ints, as_rows
 from img2tri.errors import FileError, Img2triError, integer
 from img2tri.options.all_options import plain
 from img2tri.tiles.block_plan import Cell, Plan, colour
 from img2tri.tiles.first_pass import decided, fingerprint, first_plan, look
 from img2tri.tiles.mesh_block import mesh_block
-from img2tri.tiles.piece_files import load_piece, write
-from img2tri.tiles.pixel_source import open_source
+from img2tri.tiles.piece_files import PieceFolder, PieceStore, load_piece, write
+from img2tri.tiles.pixel_source import PixelSource, open_source
 from img2tri.tiles.save_parts import FORMATS, Part, save_parts
-from img2tri.tiles.seam_matching import Seam, global_numbers, numbered_vertices
+from img2tri.tiles.seam_matching import global_numbers, numbered_vertices, seam_of
 from img2tri.tiles.seams.piece_seams import Piece, Sides, join_pieces
+from img2tri.tiles.window_regions import read_regions
 from img2tri.triangles.smallest_tangents import smallest_angles
 
 MOST_AREA_ERROR, FEW_PIXELS = 0.01, 16  # of the whole, but of no fewer pixels, as in the certificate of a mesh in memory
@@ -123,6 +125,7 @@ def mesh_tiles(
     in_order = [found[cell] for cell in cells]
     plan = decided(plan, image, in_order)
     folder = _workplace(target, fingerprint(plan, in_order))
+    store = PieceFolder(folder)
 
     facts: dict[Cell, dict[str, Any]] = {}
     cells = list(plan.cells())
@@ -133,15 +136,12 @@ def mesh_tiles(
         def share(part: float, before: int = done, now: int = len(those)) -> None:
             tell("mesh", 0.1 + 0.8 * (before + part * now) / len(cells))
 
-        facts.update(_done(client, "mesh", _block, those, (image, plan, folder), share))
+        facts.update(_done(client, "mesh", _block, those, (image, plan, store), share))
 
     tell("seams", 0.9)
-    seams = []
-    for cell in cells:
-        piece = load_piece(folder, plan, cell)[0]
-        numbers, edges = np.unique(piece.seam, return_inverse=True)
-        seams.append(Seam(len(piece.vertices), numbers, piece.vertices[numbers], edges.reshape(-1, 2)))
+    seams = [seam_of(load_piece(store, plan, cell)[0]) for cell in cells]
     numbers_of, total = numbered_vertices(seams)
+    starts = np.cumsum([0, *(seam.triangles for seam in seams)])
 
     tell("save", 0.95)
     report: dict[str, Any] = {
@@ -150,18 +150,19 @@ def mesh_tiles(
         "narrow": 0, "distance": max(f["distance"] for f in facts.values()) * plan.frame.pixel,
         "replaced": sum(f["replaced"] for f in facts.values()), "areas": {}, "boundary_edges": 0,
     }  # fmt: skip
-    count = 0
+    count, number_of = 0, {cell: k for k, cell in enumerate(cells)}
 
     def parts() -> Iterator[Part]:
         nonlocal count
         for name, some in _tiles(plan, tile):
-            pieces, numbers = [], []
+            pieces, numbers, blocks = [], [], []
             for cell in some:
-                k = cells.index(cell)
-                pieces.append(load_piece(folder, plan, cell)[0])
+                k = number_of[cell]
+                pieces.append(load_piece(store, plan, cell)[0])
                 numbers.append(global_numbers(seams[k].count, seams[k].numbers, *numbers_of[k]))
+                blocks.append((starts[k], seams[k].triangles))
             count += 1
-            yield _part(name, pieces, [np.asarray(n) for n in numbers], plan, report)
+            yield _part(name, pieces, numbers, np.array(blocks), plan, report)
         _judge(report, list(facts.values()), plan)
 
     save_parts(target, parts(), report)
@@ -170,8 +171,8 @@ def mesh_tiles(
     return TiledMesh(target, total, report["n_triangles"], count, report)
 
 
-def _block(image: Any, plan: Plan, folder: Path, cell: Cell) -> dict[str, Any]:
-    return mesh_block(plan, image, folder, cell)
+def _block(image: PixelSource, plan: Plan, store: PieceStore, cell: Cell) -> dict[str, Any]:
+    return mesh_block(plan, partial(read_regions, image, plan), store, cell)
 
 
 def _done(
@@ -234,12 +235,14 @@ def _tiles(plan: Plan, tile: int) -> Iterator[tuple[str, list[Cell]]]:
             yield f"{i // side}-{j // side}", inside
 
 
-def _part(name: str, pieces: list[Piece], numbers: list[Any], plan: Plan, report: dict[str, Any]) -> Part:
+def _part(name: str, pieces: list[Piece], numbers: list[Ints], blocks: Ints, plan: Plan, report: dict[str, Any]) -> Part:
     """Join the blocks of a tile, and add what is known of it to the report."""
-    piece = join_pieces(pieces)
-    number = np.zeros(len(piece.vertices), np.int64)
-    for one, its in zip(pieces, numbers, strict=True):
-        number[np.searchsorted(piece.vertices, one.vertices)] = its
+    piece = join_pieces(pieces) if len(pieces) > 1 else pieces[0]
+    number = numbers[0]
+    if len(pieces) > 1:
+        number = np.zeros(len(piece.vertices), np.int64)
+        for one, its in zip(pieces, numbers, strict=True):
+            number[np.searchsorted(piece.vertices, one.vertices)] = its
     a, b, c = piece.vertices[piece.triangles].T
     area = ((b - a).conj() * (c - a)).imag / 2 * plan.frame.pixel**2
     angles = smallest_angles(piece.vertices, piece.triangles)
@@ -250,7 +253,7 @@ def _part(name: str, pieces: list[Piece], numbers: list[Any], plan: Plan, report
     labels, which = np.unique(piece.regions, return_inverse=True)
     for label, found in zip(labels.tolist(), np.bincount(which, area, len(labels)).tolist(), strict=True):
         report["areas"][label] = report["areas"].get(label, 0.0) + found
-    return Part(name, plan.frame.world(as_rows(piece.vertices)), piece.triangles, piece.regions, number)
+    return Part(name, plan.frame.world(as_rows(piece.vertices)), piece.triangles, piece.regions, number, blocks)
 
 
 def _judge(report: dict[str, Any], facts: list[dict[str, Any]], plan: Plan) -> None:

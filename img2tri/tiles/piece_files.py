@@ -1,4 +1,7 @@
-"""Pieces on disk, each a file that is whole or not there: what a run leaves for the next, and one worker for another."""
+"""Pieces that are kept while the work is under way: on disk, each a file that is whole or not there, or in memory.
+
+Files are what a run leaves for the next, and one worker for another.
+"""
 
 from __future__ import annotations
 
@@ -7,8 +10,9 @@ import json
 import os
 import secrets
 from contextlib import suppress
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -18,6 +22,88 @@ from img2tri.tiles.block_plan import Cell, Plan, colour
 from img2tri.tiles.seams.piece_seams import Piece, without
 
 ARRAYS = ("vertices", "triangles", "regions", "seam", "beyond")
+Lost = dict[Cell, Ints]
+"""Which triangles of neighbours a piece has replaced."""
+
+
+class PieceStore(Protocol):
+    """Where the pieces of blocks are kept."""
+
+    def facts(self, cell: Cell) -> dict[str, Any] | None:
+        """Return what is known of a piece; None if it is not there."""
+
+    def keep(self, cell: Cell, piece: Piece, lost: Lost, facts: dict[str, Any]) -> None:
+        """Keep the piece of a block."""
+
+    def piece(self, cell: Cell) -> Piece:
+        """Return a piece as it was kept."""
+
+    def lost(self, cell: Cell, other: Cell) -> Ints:
+        """Return which triangles of another piece that of `cell` has replaced."""
+
+
+@dataclass(frozen=True)
+class PiecesInMemory:
+    """Pieces kept in this process."""
+
+    kept: dict[Cell, tuple[Piece, Lost, dict[str, Any]]] = field(default_factory=dict)
+
+    def facts(self, cell: Cell) -> dict[str, Any] | None:
+        """Return what is known of a piece; None if it is not there."""
+        return self.kept[cell][2] if cell in self.kept else None
+
+    def keep(self, cell: Cell, piece: Piece, lost: Lost, facts: dict[str, Any]) -> None:
+        """Keep the piece of a block."""
+        self.kept[cell] = piece, lost, facts
+
+    def piece(self, cell: Cell) -> Piece:
+        """Return a piece as it was kept."""
+        return self.kept[cell][0]
+
+    def lost(self, cell: Cell, other: Cell) -> Ints:
+        """Return which triangles of another piece that of `cell` has replaced."""
+        return self.kept[cell][1].get(other, np.zeros(0, np.int64))
+
+
+@dataclass(frozen=True)
+class PieceFolder:
+    """Pieces kept as files of a folder."""
+
+    folder: Path
+
+    def facts(self, cell: Cell) -> dict[str, Any] | None:
+        """Return what is known of a piece; None if it is not there."""
+        if not self._path(cell).exists():
+            return None
+        with np.load(self._path(cell)) as file:
+            facts: dict[str, Any] = json.loads(file["facts"].tobytes())
+        return facts
+
+    def keep(self, cell: Cell, piece: Piece, lost: Lost, facts: dict[str, Any]) -> None:
+        """Keep the piece of a block."""
+        buffer = io.BytesIO()
+        arrays: dict[str, Any] = {name: getattr(piece, name) for name in ARRAYS}
+        arrays["facts"] = np.frombuffer(json.dumps(facts, sort_keys=True).encode(), np.uint8)
+        arrays |= {_lost_name(other): numbers for other, numbers in lost.items()}
+        np.savez(buffer, **arrays)
+        write(self._path(cell), buffer.getvalue())
+
+    def piece(self, cell: Cell) -> Piece:
+        """Return a piece as it was kept."""
+        with np.load(self._path(cell)) as file:
+            return Piece(*(file[name] for name in ARRAYS))
+
+    def lost(self, cell: Cell, other: Cell) -> Ints:
+        """Return which triangles of another piece that of `cell` has replaced."""
+        with np.load(self._path(cell)) as file:
+            return np.asarray(file[_lost_name(other)] if _lost_name(other) in file else np.zeros(0, np.int64))
+
+    def _path(self, cell: Cell) -> Path:
+        return self.folder / f"piece-{cell[0]}-{cell[1]}.npz"
+
+
+def _lost_name(cell: Cell) -> str:
+    return f"lost_{cell[0]}_{cell[1]}"
 
 
 def write(path: Path, data: bytes) -> None:
@@ -36,41 +122,11 @@ def write(path: Path, data: bytes) -> None:
             temporary.unlink()
 
 
-def packed(piece: Piece, facts: dict[str, Any], **more: Ints) -> bytes:
-    """Turn a piece and what is known of it into bytes."""
-    buffer = io.BytesIO()
-    arrays = {name: getattr(piece, name) for name in ARRAYS}
-    np.savez(buffer, facts=np.frombuffer(json.dumps(facts, sort_keys=True).encode(), np.uint8), **arrays, **more)  # type: ignore[arg-type]
-    return buffer.getvalue()
-
-
-def piece_path(folder: Path, cell: Cell) -> Path:
-    """Where the piece of a block is kept."""
-    return folder / f"piece-{cell[0]}-{cell[1]}.npz"
-
-
-def facts_of(path: Path) -> dict[str, Any]:
-    """Return what is known of a piece."""
-    with np.load(path) as file:
-        facts: dict[str, Any] = json.loads(file["facts"].tobytes())
-    return facts
-
-
-def lost_name(cell: Cell) -> str:
-    """Return the name under which a piece keeps which triangles of a neighbour it has replaced."""
-    return f"lost_{cell[0]}_{cell[1]}"
-
-
-def load_piece(folder: Path, plan: Plan, cell: Cell, before: int = 4) -> tuple[Piece, Ints]:
+def load_piece(store: PieceStore, plan: Plan, cell: Cell, before: int = 4) -> tuple[Piece, Ints]:
     """Return a piece without the triangles that neighbours of colours lower than `before` have replaced, and the numbers of those left."""
-    with np.load(piece_path(folder, cell)) as file:
-        piece = Piece(*(file[name] for name in ARRAYS))
-    left = np.ones(len(piece.triangles), bool)
+    piece = store.piece(cell)
+    gone = np.zeros(len(piece.triangles), bool)
     for other in plan.neighbours(cell):
         if colour(cell) < colour(other) < before:
-            with np.load(piece_path(folder, other)) as file:
-                if lost_name(cell) in file:
-                    left[file[lost_name(cell)]] = False
-    if not left.all():
-        piece = without(piece, ~left)
-    return piece, np.flatnonzero(left)
+            gone[store.lost(other, cell)] = True
+    return (without(piece, gone) if gone.any() else piece), np.flatnonzero(~gone)

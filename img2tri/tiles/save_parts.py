@@ -17,7 +17,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from img2tri.arrays import Floats, Ints
+from img2tri.arrays import Floats, Ints, runs
 from img2tri.errors import FileError
 
 FORMATS = (".zarr", ".pvtu", ".vtkhdf")
@@ -35,6 +35,8 @@ class Part:
         As of a mesh, in world units.
     numbers
         (n,) int64, the numbers of its vertices in the whole mesh.
+    blocks
+        (b, 2) int64, for each block of the part the number of its first triangle in the whole mesh, and how many follow.
     """
 
     name: str
@@ -42,6 +44,7 @@ class Part:
     triangles: Ints
     regions: Ints
     numbers: Ints
+    blocks: Ints
 
 
 def save_parts(out: Path, parts: Iterable[Part], report: dict[str, Any]) -> None:
@@ -81,7 +84,7 @@ def _zarr(path: Path, parts: Iterable[Part], report: dict[str, Any]) -> None:
     names = []
     for part in parts:
         group = root.create_group(f"parts/{part.name}")
-        for name in ("vertices", "triangles", "regions", "numbers"):
+        for name in ("vertices", "triangles", "regions", "numbers", "blocks"):
             array = getattr(part, name)
             group.create_array(name, data=array) if array.size else group.create_array(name, shape=array.shape, dtype=array.dtype)
         names.append(part.name)
@@ -169,7 +172,7 @@ def _vtkhdf(path: Path, parts: Iterable[Part], report: dict[str, Any]) -> None:
 
 
 def load_tiles(path: str | os.PathLike[str]) -> tuple[Floats, Ints, Ints]:
-    """Read a mesh in parts from ``.zarr`` whole, each vertex once.
+    """Read a mesh in parts from ``.zarr`` whole, each vertex once, in an order that does not depend on the parts.
 
     Parameters
     ----------
@@ -191,13 +194,15 @@ def load_tiles(path: str | os.PathLike[str]) -> tuple[Floats, Ints, Ints]:
     try:
         root: Any = zarr.open_group(path, mode="r")
         groups = [root[f"parts/{name}"] for name in root.attrs["parts"]]
-        vertices = np.zeros((root.attrs["img2tri"]["n_vertices"], 2))
+        facts: Any = root.attrs["img2tri"]
+        vertices, triangles = np.zeros((facts["n_vertices"], 2)), np.zeros((facts["n_triangles"], 3), np.int64)
+        regions = np.zeros(len(triangles), np.int64)
+        for group in groups:
+            number = group["numbers"][:]
+            vertices[number] = group["vertices"][:]
+            which, place = runs(group["blocks"][:, 1])
+            at = group["blocks"][:, 0][which] + place
+            triangles[at], regions[at] = number[group["triangles"][:]], group["regions"][:]
     except (KeyError, OSError, ValueError) as problem:
         raise FileError(f"{path}: expected a mesh made by mesh_tiles, found {problem}") from problem
-    triangles, regions = [], []
-    for group in groups:
-        numbers = group["numbers"][:]
-        vertices[numbers] = group["vertices"][:]
-        triangles.append(numbers[group["triangles"][:]])
-        regions.append(group["regions"][:])
-    return vertices, np.concatenate(triangles), np.concatenate(regions)
+    return vertices, triangles, regions

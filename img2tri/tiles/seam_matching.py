@@ -14,6 +14,7 @@ import numpy as np
 
 from img2tri.arrays import Ints, Points
 from img2tri.errors import MeshError
+from img2tri.tiles.seams.piece_seams import Piece
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,8 +23,8 @@ class Seam:
 
     Attributes
     ----------
-    count
-        How many vertices the piece has.
+    count, triangles
+        How many vertices and triangles the piece has.
     numbers
         (k,) int64, its vertices on seams.
     places
@@ -33,9 +34,16 @@ class Seam:
     """
 
     count: int
+    triangles: int
     numbers: Ints
     places: Points
     edges: Ints
+
+
+def seam_of(piece: Piece) -> Seam:
+    """Return what of a piece others share."""
+    numbers, edges = np.unique(piece.seam, return_inverse=True)
+    return Seam(len(piece.vertices), len(piece.triangles), numbers, piece.vertices[numbers], edges.reshape(-1, 2))
 
 
 def numbered_vertices(seams: Sequence[Seam]) -> tuple[list[tuple[int, Ints]], int]:

@@ -72,15 +72,66 @@ def test_seams_may_cut_a_specimen_at_any_place(name, monkeypatch, tmp_path):
         judged(image > 0, tmp_path, edge_length=2.0)
 
 
-def test_the_bits_do_not_depend_on_the_tile_size(tmp_path):
-    mask, found = blobs(300), []
-    for tile in (1, 256, 10_000):
+def in_bytes(arrays):
+    return [np.ascontiguousarray(array).tobytes() for array in arrays]
+
+
+def bits(mesh):
+    return in_bytes((mesh.vertices, mesh.triangles, mesh.regions))
+
+
+def test_the_bits_are_the_same_whatever_the_tile_size_and_in_memory(tmp_path):
+    mask = blobs(300)
+    in_memory = mesh_image(mask, edge_length=4.0, blocks=True)
+    assert in_memory.report.kept
+    assert in_memory.report.counted["blocks"] == 9
+    assert bits(in_memory) != bits(mesh_image(mask, edge_length=4.0))
+    for tile, parts in {1: 9, 256: 4, 10_000: 1}.items():
         made = mesh_tiles(mask, tmp_path / f"{tile}.zarr", tile=tile, edge_length=4.0)
-        vertices, triangles, _ = load_tiles(made.path)
-        assert made.n_parts == {1: 9, 256: 4, 10_000: 1}[tile]
-        corners = vertices[triangles].reshape(-1, 6)
-        found.append(corners[np.lexsort(corners.T)].tobytes())
-    assert found[0] == found[1] == found[2]
+        assert made.n_parts == parts
+        assert in_bytes(load_tiles(made.path)) == bits(in_memory)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"edge_length": 4.0, "labels": True, "spacing": (0.5, 0.7)},
+        {"edge_length": {1: 3.0, 2: 5.0, 3: 4.0}, "labels": [1, 2, 3], "origin": "upper"},
+        {"threshold": 1, "tolerance": 0.8, "elements_across": 2.0, "edge_length": 4.0, "invert": True},
+    ],
+)
+def test_options_mean_the_same_in_memory_and_by_tiles(options, tmp_path):
+    labels = (blobs(180) + 2 * blobs(180, seed=1)).astype(np.uint8)
+    made = mesh_tiles(labels, tmp_path / "mesh.zarr", **options)
+    assert in_bytes(load_tiles(made.path)) == bits(mesh_image(labels, blocks=True, **options))
+
+
+@pytest.mark.parametrize("options", [{}, {"edge_length": 5.0}, {"spacing": 0.25, "origin": (3, 4), "corners": "keep"}])
+def test_an_image_of_one_block_is_meshed_as_without(options, tmp_path, monkeypatch):
+    monkeypatch.setattr(block_plan, "BLOCK_SIDE", 2048)
+    mask = blobs(160)
+    plain = mesh_image(mask, **options)
+    assert bits(plain) == bits(mesh_image(mask, blocks=True, **options))
+    assert bits(plain) == in_bytes(load_tiles(mesh_tiles(mask, tmp_path / "mesh.zarr", **options).path))
+
+
+def test_a_change_of_the_image_changes_the_mesh_in_its_block_and_those_around_only():
+    mask, edge = blobs(384), 4.0
+    changed = mask.copy()
+    changed[20:40, 20:50] ^= True  # no window of another block sees this
+    corners = []
+    for image in (mask, changed):
+        mesh = mesh_image(image, edge_length=edge, blocks=True, origin="upper")
+        three = mesh.vertices[mesh.triangles]
+        corners.append({row.tobytes() for row in three[(three > 256 + 8 * edge).any(axis=(1, 2))]})
+    assert corners[0] == corners[1]
+    assert len(corners[0]) > 3000
+
+
+@pytest.mark.parametrize("options", [{"periodic": "x"}, {"symmetric": "x"}, {"interior": "poisson"}, {"smoothing": "uniform"}])
+def test_what_takes_the_image_as_a_whole_is_refused_by_blocks(options):
+    with pytest.raises(ParameterError, match=f"{next(iter(options))}: expected to be left out for an image by blocks"):
+        mesh_image(np.ones((30, 30), bool), blocks=True, **options)
 
 
 def test_a_second_run_goes_on_where_the_first_was_stopped(tmp_path, monkeypatch):
