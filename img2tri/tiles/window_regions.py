@@ -31,7 +31,7 @@ def cut_out(zones: Segmentation, rows: slice, columns: slice) -> Segmentation:
         gray = replace(gray, values=gray.values[rows, columns], missing=None if gray.missing is None else gray.missing[rows, columns])
     elif gray is not None:
         gray = gray[rows, columns]
-    return replace(zones, labels=zones.labels[rows, columns], gray=gray)
+    return Segmentation(zones.labels[rows, columns], zones.background, zones.threshold, gray, zones.level)
 
 
 def read_regions(source: PixelSource, plan: Plan, rows: slice, columns: slice) -> Segmentation:
