@@ -6,9 +6,10 @@ triangles, all wedges or all tetrahedra, linear or quadratic.
 
 from __future__ import annotations
 
+import json
 import re
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -46,7 +47,9 @@ def parse_msh(data: bytes) -> Found:
     version, binary, _ = sections["MeshFormat"].split()
     if version not in msh.VERSIONS or binary != "0":
         raise ValueError(f"expected MSH 2.2 or 4.1 in text, found {version} in {'text' if binary == '0' else 'binary'}")
-    numbers, points, blocks = (_read_version_4 if version == "4.1" else _read_version_2)(sections)
+    texts = commented(sections.get("Comments", ""), "")
+    pieces = {int(number): name for name, number in json.loads(texts.pop("pieces", "{}")).items()}
+    numbers, points, blocks = _read_version_4(sections) if version == "4.1" else _read_version_2(sections, pieces)
     place = np.full(int(numbers.max(initial=0)) + 1, -1)
     place[numbers] = np.arange(len(numbers))
     names = {
@@ -54,6 +57,7 @@ def parse_msh(data: bytes) -> Found:
         for dimension, group, name in re.findall(r'^\s*(\d+)\s+(\d+)\s+"(.*)"\s*$', sections.get("PhysicalNames", ""), re.MULTILINE)
     }
     top = max((dimension for dimension, *_ in blocks), default=0)
+    names |= {(top - 1, number): name for number, name in pieces.items()}
     inside = [(_GMSH.get(number, ""), groups[0], rows) for dimension, groups, number, rows in blocks if dimension == top]
     kind, table = _one_kind([(kind, np.insert(rows, 1, group, axis=1)) for kind, group, rows in inside])
     facets = defaultdict(list)
@@ -63,7 +67,6 @@ def parse_msh(data: bytes) -> Found:
                 facets[names[dimension, group]].append(place[rows[:, 1:]])
     alike = {name: np.concatenate(parts) for name, parts in facets.items() if len({part.shape[1] for part in parts}) == 1}
     called = {group: name for (dimension, group), name in names.items() if dimension == top}
-    texts = commented(sections.get("Comments", ""), "")
     found = _assembled(points, table, place, kind, msh.GMSH_ORDERS, called, alike, texts)
     cells = {name: values[:, 1:] for name, values in _data(sections_of(text, "ElementData"), np.sort(table[:, 0])).items()}
     nodes = {name: values[:, 1:] for name, values in _data(sections_of(text, "NodeData"), numbers).items()}
@@ -198,14 +201,16 @@ def _read_version_4(sections: dict[str, str]) -> tuple[Ints, Floats, _Blocks]:
     return all_numbers[order], np.concatenate(points)[order], blocks
 
 
-def _read_version_2(sections: dict[str, str]) -> tuple[Ints, Floats, _Blocks]:
-    """Return the numbers of the nodes, their places, and the blocks of elements."""
+def _read_version_2(sections: dict[str, str], pieces: Collection[int]) -> tuple[Ints, Floats, _Blocks]:
+    """Return the numbers of the nodes, their places, and the blocks of elements; entities that are `pieces` are groups too."""
     nodes = np.array(sections["Nodes"].split()[1:], np.float64).reshape(-1, 4)
-    rows: dict[tuple[int, int], list[list[int]]] = defaultdict(list)
+    rows: dict[tuple[int, tuple[int, ...]], list[list[int]]] = defaultdict(list)
     for line in sections["Elements"].splitlines()[1:]:
         numbers = [int(word) for word in line.split()]
-        rows[numbers[1], numbers[3] if numbers[2] else 0].append([numbers[0], *numbers[3 + numbers[2] :]])
-    blocks: _Blocks = [(_DIMENSIONS[kind], (group,), kind, np.array(elements)) for (kind, group), elements in rows.items()]
+        tags = numbers[3 : 3 + numbers[2]]
+        groups = (tags[0] if tags else 0, *(tag for tag in tags[1:2] if tag in pieces))
+        rows[numbers[1], groups].append([numbers[0], *numbers[3 + numbers[2] :]])
+    blocks: _Blocks = [(_DIMENSIONS[kind], groups, kind, np.array(elements)) for (kind, groups), elements in rows.items()]
     return nodes[:, 0].astype(np.int64), nodes[:, 1:], blocks
 
 

@@ -4,14 +4,15 @@ Physical groups have the numbers of `img2tri.views.objects.sets.numbers_in_files
 and no set has the number of a region, as many readers go by numbers without their dimension. Nodes and elements are numbered in the order
 of the file, which some readers take for granted: nodes as in the mesh, facets before cells, cells by region.
 
-An entity is a piece of a set, or a region; in version 4.1 a piece is in the group of its set and in one of its own, in version 2.2, where
-an element has one group, its number is that of its entity. Nodes of periodic meshes are paired in ``$Periodic``, values of cells and nodes
-are ``$ElementData`` and ``$NodeData``. The format is described in the manual of Gmsh, "MSH file format". Written here because meshio
-refuses to write triangles and edges into one file of version 4.1.
+An entity is a piece of a set, or a region; in version 4.1 a piece is in the group of its set and in one of its own. In version 2.2, where
+an element has one group, the number of a piece is that of its entity, and a comment has the names of these numbers. Nodes of periodic
+meshes are paired in ``$Periodic``, values of cells and nodes are ``$ElementData`` and ``$NodeData``. The format is described in the manual
+of Gmsh, "MSH file format". Written here because meshio refuses to write triangles and edges into one file of version 4.1.
 """
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
 from typing import Any
 
@@ -70,7 +71,9 @@ def msh(made: Cells, *, version: str = "4.1") -> dict[str, bytes]:
     names += [(inside, made.ids[label], name) for label, name in made.names.items()]
     entities = _entities(made, members)
     lines = ["$MeshFormat", f"{version} 0 8", "$EndMeshFormat"]
-    lines += ["$Comments", MARK, *comment_lines(made.texts | label_table(made), ""), "$EndComments"]
+    pieces = {name: made.tags[name] for name in made.part_of} if version == "2.2" else {}
+    notes = made.texts | label_table(made) | ({"pieces": json.dumps(pieces)} if pieces else {})
+    lines += ["$Comments", MARK, *comment_lines(notes, ""), "$EndComments"]
     lines += ["$PhysicalNames", str(len(names)), *(f'{d} {number} "{_unquoted(name)}"' for d, number, name in names), "$EndPhysicalNames\n"]
     body = _write_version_4(made.points, entities) if version == "4.1" else _write_version_2(made.points, entities)
     # Some readers want values of all elements: facets have those of their cells.
@@ -78,7 +81,7 @@ def msh(made: Cells, *, version: str = "4.1") -> dict[str, bytes]:
     cells = np.concatenate([*(rows[:, 0] for name, rows in made.sides.items() if name not in split), *members.values()])
     data = [_data("ElementData", name, values[cells]) for name, values in made.cell_data.items()]
     data += [_data("NodeData", name, values) for name, values in made.point_data.items()]
-    return {"": "".join(["\n".join(lines), *body, _periodic(made), *data]).encode()}
+    return {"": "".join(["\n".join(lines), *body, _periodic(made, version), *data]).encode()}
 
 
 def _entities(made: Cells, members: dict[int, Ints]) -> list[_Entity]:
@@ -134,12 +137,16 @@ def _write_version_4(points: Floats, entities: list[_Entity]) -> list[str]:
     return [*parts, "$EndElements\n"]
 
 
-def _periodic(made: Cells) -> str:
-    """Pair the nodes of opposite sides, piece by piece: dimension, entity, the one it repeats, and both nodes of each pair."""
+def _periodic(made: Cells, version: str) -> str:
+    """Pair the nodes of opposite sides, piece by piece: dimension, entity, the one it repeats, and both nodes of each pair.
+
+    Version 4.1 has the length of an affine map before them, which is 0.
+    """
     pairs = node_pairs(made)
     if not pairs:
         return ""
-    links = "".join(f"{2 if made.solid else 1} {p.tag} {p.master}\n0\n{len(p.nodes)}\n{whole_rows(p.nodes + 1)}" for p in pairs)
+    affine = "0\n" if version == "4.1" else ""
+    links = "".join(f"{2 if made.solid else 1} {p.tag} {p.master}\n{affine}{len(p.nodes)}\n{whole_rows(p.nodes + 1)}" for p in pairs)
     return f"$Periodic\n{len(pairs)}\n{links}$EndPeriodic\n"
 
 

@@ -5,12 +5,14 @@ from __future__ import annotations
 import meshio
 import numpy as np
 import pytest
+from views.plates import cells
 from views.solver_meshes import KINDS, PIECES, TAGS, TEXTS, gmsh, made, plate, sizes
 
 from img2tri import MeshError, ParameterError
 from img2tri.views.formats.readers.read_msh_bdf import parse_msh
 from img2tri.views.formats.solvers.msh import msh
-from img2tri.views.objects.solver_cells import flat_cells
+from img2tri.views.objects.extruded_wedges import wedges
+from img2tri.views.objects.solver_cells import flat_cells, solid_cells
 
 VERSIONS = ("4.1", "2.2")
 IDS = {"region_-1": 5, "bone": 4}
@@ -79,6 +81,44 @@ def test_gmsh_finds_the_nodes_of_each_group(opened):
         assert sorted(tags.tolist()) == (np.unique(mesh.facets(name)) + 1).tolist()
 
 
+@tools
+@pytest.mark.parametrize("solid", [False, True])
+def test_gmsh_finds_the_nodes_that_repeat_others(opened, tmp_path, solid):
+    vertices, triangles = cells(np.ones((4, 5), bool))
+    mesh = flat_cells(vertices, triangles, bounds=(0, 0, 5, 4), periodic="xy")
+    mesh = solid_cells(mesh, *wedges(vertices, triangles, height=1, layers=1)[:2]) if solid else mesh
+    program = opened(msh(mesh)[""])
+    for name, master, axis, length in (("right", "left", 0, 5), ("top", "bottom", 1, 4)):
+        tag, nodes, others, _ = program.model.mesh.getPeriodicNodes(2 if solid else 1, mesh.tags[name])
+        assert tag == mesh.tags[master]
+        assert sorted(nodes.tolist()) == (np.unique(mesh.facets(name)) + 1).tolist()
+        apart = mesh.points[nodes.astype(int) - 1] - mesh.points[others.astype(int) - 1]
+        assert np.array_equal(apart, np.tile(np.eye(3)[axis] * length, (len(nodes), 1)))
+    # In version 2.2 Gmsh writes what it does not read again.
+    program.option.setNumber("Mesh.MshFileVersion", 2.2)
+    program.write(str(tmp_path / "b.msh"))
+    one, other = (
+        text.partition("$Periodic\n")[2].split() for text in ((tmp_path / "b.msh").read_text(), msh(mesh, version="2.2")[""].decode())
+    )
+    assert sorted(other) == sorted(one)
+    assert other[:4] == one[:4]
+
+
+@tools
+@pytest.mark.parametrize("version", VERSIONS)
+@pytest.mark.parametrize("labels", [(2**31 - 1, 5), (-5, 2), (-(2**31), 2**31), (2**63 - 1, 3), (0, 1), (2_000_000_000, 1_999_999_999)])
+def test_gmsh_finds_labels_of_any_size_by_their_names(opened, labels, version):
+    square = np.array([[0, 0], [2, 0], [2, 1], [0, 1.0]]), np.array([[0, 1, 2], [0, 2, 3]])
+    program = opened(msh(flat_cells(*square, labels, bounds=(0, 0, 2, 1)), version=version)[""])
+    found = {program.model.getPhysicalName(*group): group for group in program.model.getPhysicalGroups(2)}
+    assert set(found) == {f"region_{label}" for label in labels}
+    for row, label in enumerate(labels):
+        number = found[f"region_{label}"][1]
+        assert number == label or not 1 <= label <= 2_000_000_000
+        nodes = program.model.mesh.getNodesForPhysicalGroup(2, number)[0]
+        assert sorted(nodes.tolist()) == (np.sort(square[1][row]) + 1).tolist()
+
+
 @pytest.mark.parametrize("version", VERSIONS)
 @pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "wedge15"])  # which meshio does not know
 def test_meshio_finds_cells_groups_and_names(tmp_path, kind, version):
@@ -111,7 +151,7 @@ def test_our_own_reader_finds_everything_by_region(kind, version):
     assert np.array_equal(found.cells, mesh.cells[order])
     assert (found.kind, found.names) == (kind, mesh.names)
     assert np.array_equal(found.regions, mesh.regions[order])
-    sets = {name: np.sort(mesh.facets(name), axis=0) for name in mesh.sides if version == "4.1" or name not in PIECES}
+    sets = {name: np.sort(mesh.facets(name), axis=0) for name in mesh.sides}
     assert {name: np.sort(rows, axis=0).tolist() for name, rows in found.facets.items()} == {n: rows.tolist() for n, rows in sets.items()}
 
 
