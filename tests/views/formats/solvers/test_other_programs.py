@@ -1,22 +1,27 @@
-"""What programs for computing find in our files: GetDP, OpenFOAM, FreeFem, CalculiX and pyNastran measure the plate, or compute on it."""
+"""What programs for computing find in our files: they measure the plate, or compute on it. Each is a row of the README's table."""
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 from children import PATIENCE
 from views.plates import cells
-from views.solver_meshes import AREAS, HEIGHT, SIZE, TAGS, made, plate, program, sizes
+from views.solver_meshes import AREAS, BOUNDS, HEIGHT, SIZE, TAGS, gmsh, made, plate, program, sizes
 
+from img2tri import TriangleMesh
+from img2tri.types import Frame
 from img2tri.views.formats.solvers.bdf import bdf
 from img2tri.views.formats.solvers.inp import inp
 from img2tri.views.formats.solvers.medit import medit
 from img2tri.views.formats.solvers.msh import msh
+from img2tri.views.formats.solvers.save_for_solvers import export
 from img2tri.views.objects.solver_cells import flat_cells
 
 pytestmark = pytest.mark.tools
@@ -135,3 +140,129 @@ def test_pynastran_reads_numbers_of_nine_digits(tmp_path, monkeypatch):
     (tmp_path / "a.bdf").write_bytes(bdf(mesh)[""])
     model = reader.read_bdf(str(tmp_path / "a.bdf"), xref=False, validate=False, debug=None)
     assert np.array_equal([model.elements[i + 1].pid for i in range(len(mesh.cells))], mesh.regions)
+
+
+# ---- found by Python libraries ----
+
+
+def parts_of(mesh):
+    """Sizes of regions and sets, without the pieces of sets."""
+    regions, sets = sizes(mesh.solid)
+    return regions, {name: size for name, size in sets.items() if name in mesh.wholes}
+
+
+@pytest.mark.parametrize("version", ["4.1", "2.2"])
+@pytest.mark.parametrize("kind", ["triangle", "triangle6", "tetra", "tetra10"])
+def test_nutils_integrates_over_every_part(tmp_path, kind, version):
+    nutils = pytest.importorskip("nutils.mesh", reason="nutils is not installed")
+    from nutils import function
+
+    mesh = made(kind, z=0.0)
+    (tmp_path / "a.msh").write_bytes(msh(mesh, version=version)[""])
+    topology, place = nutils.gmsh(tmp_path / "a.msh")
+    regions, sets = parts_of(mesh)
+    size = {name: topology.get_groups(name).integrate(function.J(place), degree=2) for name in regions}
+    size |= {
+        name: (topology.interfaces if "__" in name else topology.boundary)[name].integrate(function.J(place), degree=2) for name in sets
+    }
+    assert {name: float(value) for name, value in size.items()} == pytest.approx({**regions, **sets})
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # it leaves the file open
+@pytest.mark.parametrize("kind", ["triangle", "tetra"])
+def test_ngsolve_integrates_over_every_part(tmp_path, kind):
+    try:
+        import ngsolve
+        from netgen.read_gmsh import ReadGmsh
+    except (ImportError, OSError) as problem:
+        pytest.skip(f"ngsolve is not installed, or lacks a library: {problem}")
+    mesh = made(kind, z=0.0)
+    (tmp_path / "a.msh").write_bytes(msh(mesh, version="2.2")[""])
+    found = ngsolve.Mesh(ReadGmsh(str(tmp_path / "a")))
+    regions, sets = parts_of(mesh)
+    size = {name: ngsolve.Integrate(1, found, definedon=found.Materials(name)) for name in regions}
+    size |= {name: ngsolve.Integrate(1, found, ngsolve.BND, definedon=found.Boundaries(name)) for name in sets}
+    assert size == pytest.approx({**regions, **sets})
+
+
+def test_scikit_fem_computes_on_regions_and_edges():
+    pytest.importorskip("skfem", reason="scikit-fem is not installed")
+    from skfem import Basis, ElementTriP1, ElementTriP2, condense, solve
+    from skfem.models.poisson import laplace
+
+    vertices, triangles, regions = plate()
+    frame = Frame((5, 6), (SIZE, SIZE), BOUNDS[:2])
+    whole = TriangleMesh(vertices, triangles, regions, frame, {4: "bone"})
+    expected = energy(vertices, triangles, *(np.unique(whole.sets().edges[name]) for name in ("left", "hole_1")))
+    found = {}
+    for order, element in ((1, ElementTriP1()), (2, ElementTriP2())):
+        basis = Basis(whole.to_skfem(order=order), element)
+        matrix = laplace.assemble(basis)
+        u = basis.zeros()
+        u[basis.get_dofs("hole_1").all()] = 1
+        u = solve(*condense(matrix, x=u, D=basis.get_dofs({"left", "hole_1"})))
+        found[order] = u @ matrix @ u
+    assert found[1] == pytest.approx(expected, rel=1e-9)
+    assert 0.8 * expected < found[2] < expected  # a richer space has less energy
+
+
+# ---- found by programs ----
+
+PARAVIEW = """
+import json, sys
+from paraview import servermanager
+from paraview.simple import *
+
+for name in sys.argv[1:]:
+    reader = VTKHDFReader(FileName=[name]) if name.endswith(".vtkhdf") else OpenDataFile(name)
+    reader.UpdatePipeline()
+    data = servermanager.Fetch(reader)
+    size = {}
+    for label in (-1, 4):
+        part = IntegrateVariables(Threshold(reader, Scalars=["CELLS", "region"], LowerThreshold=label, UpperThreshold=label))
+        part.UpdatePipeline()
+        values = servermanager.Fetch(part).GetCellData()
+        size[label] = [values.GetArray(n).GetTuple1(0) for n in ("Area", "Volume") if values.GetArray(n)][0]
+    fields = data.GetFieldData()
+    rows = {fields.GetArrayName(i): fields.GetAbstractArray(i).GetNumberOfTuples() for i in range(fields.GetNumberOfArrays())}
+    print(json.dumps([data.GetNumberOfCells(), size, rows]))
+"""
+
+
+def test_paraview_finds_regions_and_sets(tmp_path):
+    pvbatch = program("pvbatch")
+    meshes = {f"{kind}{suffix}": made(kind) for kind in ("triangle", "triangle6", "tetra", "tetra10") for suffix in (".vtu", ".vtkhdf")}
+    for name, mesh in meshes.items():
+        export(tmp_path / name, mesh)
+    (tmp_path / "look.py").write_text(PARAVIEW)
+    said = run(tmp_path, pvbatch, "look.py", *meshes)
+    found = [json.loads(line) for line in said.splitlines() if line.startswith("[")]
+    for mesh, (count, size, fields) in zip(meshes.values(), found, strict=True):
+        regions, _ = sizes(mesh.solid)
+        assert count == len(mesh.cells)
+        assert size == pytest.approx({"-1": regions["region_-1"], "4": regions["bone"]})
+        assert {name: fields[name] for name in mesh.sides} == {name: len(rows) for name, rows in mesh.sides.items()}
+
+
+@pytest.mark.parametrize("kind", ["triangle", "triangle6", "tetra", "wedge"])
+@pytest.mark.parametrize("suffix", [".med", ".unv", ".key", ".su2", ".cgns"])
+def test_gmsh_makes_other_formats_of_ours_with_names(tmp_path, kind, suffix):
+    """As ``gmsh a.msh -save -o a.med`` does."""
+    gmsh_ = gmsh()
+    mesh = made(kind)
+    (tmp_path / "a.msh").write_bytes(msh(mesh)[""])
+    code = (
+        "import gmsh; gmsh.initialize(interruptible=False); gmsh.option.setNumber('General.Terminal', 0); "
+        f"gmsh.open('a.msh'); gmsh.write('a{suffix}'); gmsh.finalize()"
+    )
+    run(tmp_path, sys.executable, "-c", code)
+    data = (tmp_path / f"a{suffix}").read_bytes()
+    names = [*mesh.names.values(), *mesh.wholes]
+    assert [name for name in names if name.encode() not in data] == []
+    if suffix in (".unv", ".med"):
+        gmsh_.initialize(interruptible=False)
+        gmsh_.option.setNumber("General.Terminal", 0)
+        gmsh_.open(str(tmp_path / f"a{suffix}"))
+        again = {gmsh_.model.getPhysicalName(*group).strip() for group in gmsh_.model.getPhysicalGroups()}
+        gmsh_.finalize()
+        assert set(names) <= again
