@@ -48,3 +48,11 @@ def test_the_main_command_makes_its_files(tmp_path, monkeypatch, capsys):
 def test_links_lead_somewhere():
     for target in re.findall(r"\]\((?!http)([^)#]+)\)", README.read_text(encoding="utf-8")):
         assert (ROOT / target).exists(), target
+
+
+def test_each_program_with_a_star_has_a_test():
+    table = README.read_text(encoding="utf-8").partition("Which program takes what")[2].partition("## ")[0]
+    starred = re.findall(r"(\w[\w-]*)(?: \*|\s*\*)", " ".join(line.split("|")[1] for line in table.splitlines() if line.startswith("| ")))
+    assert len(starred) >= 18
+    tests = " ".join(re.findall(r"def (test_\w+)", "".join(path.read_text() for path in (ROOT / "tests" / "views").rglob("test_*.py"))))
+    assert [name for name in starred if name.lower().replace("-", "_") not in tests] == []
