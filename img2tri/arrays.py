@@ -79,8 +79,8 @@ def runs(counts: Ints) -> tuple[Ints, Ints]:
     >>> runs(np.array([2, 0, 3]))
     (array([0, 0, 2, 2, 2]), array([0, 1, 0, 1, 2]))
     """
-    run = np.repeat(np.arange(len(counts)), counts)
-    return run, np.arange(len(run)) - np.repeat(np.cumsum(counts) - counts, counts)
+    run = np.arange(len(counts)).repeat(counts)
+    return run, np.arange(len(run)) - (counts.cumsum() - counts)[run]
 
 
 def unique_edges(triangles: Ints) -> tuple[Ints, Ints]:

@@ -9,11 +9,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from img2tri.arrays import Bools, Floats, Ints, Points, as_rows, cross
+from img2tri.arrays import Bools, Floats, Ints, Points, cross, runs
 from img2tri.shapes.simplify.simplification import Simplification
 
 GAP = 0.25  # px, the least distance kept between chords, over their deviations
-FEW = 2**17  # pairs: rather looked at one by one than found in trees
 SHARP_TURN = np.cos(np.radians(50.0))  # chords that meet at less than this angle are too sharp
 
 
@@ -62,58 +61,65 @@ def crowded_chords(s: Simplification, first: Ints, last: Ints, deviation: Floats
 def _within(a: Points, b: Points, reach: Floats, fresh: Bools) -> tuple[Ints, Ints]:
     """Pairs of segments whose boxes, each widened by its `reach`, meet, at least one of them fresh; each pair once."""
     middle, wide, high = (a + b) / 2, np.abs((b - a).real) / 2 + reach, np.abs((b - a).imag) / 2 + reach
-    few = np.count_nonzero(fresh) * len(fresh) <= FEW
-    i, j = (_beside if few else _near)(middle, np.maximum(wide, high), fresh)
+    i, j = _near(middle, np.maximum(wide, high), fresh)
     away = middle[i] - middle[j]
     meet = (fresh[i] | fresh[j]) & (np.abs(away.real) <= wide[i] + wide[j]) & (np.abs(away.imag) <= high[i] + high[j])
     return i[meet], j[meet]
 
 
-def _beside(middle: Points, half: Floats, fresh: Bools) -> tuple[Ints, Ints]:
-    """Pairs of squares around their middles that meet, one of them fresh, each pair once: found by looking at all."""
-    chosen = np.flatnonzero(fresh)
-    apart = half[chosen, None] + half
-    meet = (np.abs(middle.real[chosen, None] - middle.real) <= apart) & (np.abs(middle.imag[chosen, None] - middle.imag) <= apart)
-    i, j = np.nonzero(meet)
-    i = chosen[i]
-    once = (i < j) | ~fresh[j]
-    return i[once], j[once]
-
-
 def _near(middle: Points, half: Floats, fresh: Bools) -> tuple[Ints, Ints]:
-    """Pairs of squares that may meet, each once, found in trees: one for each class of sizes, as a few large ones make all look far."""
-    from scipy.spatial import cKDTree
+    """Pairs of squares around their middles that may meet, one of them fresh, each pair once: found in grids of cells.
 
-    places, chosen = as_rows(middle), np.flatnonzero(fresh)
-    size = 4.0 ** np.ceil(np.log2(half) / 2)
-    # A tree for each class; where few segments are fresh, of those only that are anywhere near them.
-    classes = []
-    for largest in np.unique(size).tolist():
-        own = np.flatnonzero(size == largest)
-        if len(chosen) < len(fresh):
-            some, last = np.concatenate([own, chosen]), np.arange(len(own) + len(chosen)) >= len(own)
-            own = own[_around(middle[some], largest + half[chosen].max(), last)[: len(own)]]
-        classes.append((largest, own, cKDTree(places[own], balanced_tree=False, compact_nodes=False)))
+    There is a grid for each class of sizes, for pairs whose larger square is of that class; its cells are as wide as the widest pair is
+    apart. Cells are numbered row by row, so those around a square are three stretches of numbers::
+
+        . 7 8 9 .
+        . 4 5 6 .      5 and what comes after it in the order of cells, 6; 7 to 9: each pair is seen from one of its two
+        . 1 2 3 .
+    """
+    size = np.ceil(np.log2(half) / 2)  # classes of a ratio of 4
     found = [np.zeros((2, 0), np.int64)]
-    for k, (one, segments, tree) in enumerate(classes):
-        found.append(segments[tree.query_pairs(2 * one, p=np.inf, output_type="ndarray").T])
-        for other, others, beside in classes[k + 1 :]:
-            pairs = tree.sparse_distance_matrix(beside, one + other, p=np.inf, output_type="ndarray")
-            found.append(np.stack([segments[pairs["i"]], others[pairs["j"]]]))
+    for each in np.unique(size).tolist():
+        width = 2 * float(half[size == each].max())
+        cell, above = _cells(middle, width)
+        chosen = size <= each
+        if not fresh.all():
+            chosen &= _around(cell, above, fresh)
+        order = np.flatnonzero(chosen)
+        order = order[np.argsort(cell[order])]
+        large = size[order] == each
+        own, smaller = order[large], order[~large]
+        at, others = cell[own], cell[smaller]
+        for first, last in ((None, at + 1), (at + above - 1, at + above + 1)):
+            found.append(_between(own, own, at, first, last))
+        if len(smaller):
+            found += [_between(own, smaller, others, row - 1, row + 1) for row in (at - above, at, at + above)]
     i, j = np.concatenate(found, axis=1)
     return i, j
 
 
-def _around(middles: Points, reach: float, chosen: Bools) -> Bools:
-    """Tell which places may be within reach of the chosen ones: those in the same square of a grid, or in one beside it."""
-    column, row = (np.floor((part - part.min()) / reach).astype(np.int64) + 1 for part in (middles.real, middles.imag))
-    width = int(column.max()) + 2
-    square = row * width + column
-    marked = np.zeros((int(row.max()) + 2) * width, bool)
-    hit = np.unique(square[chosen])
-    for beside in (-width - 1, -width, 1 - width, -1, 0, 1, width - 1, width, width + 1):
-        marked[hit + beside] = True
-    return np.asarray(marked[square])
+def _between(own: Ints, others: Ints, cells: Ints, first: Ints | None, last: Ints) -> Ints:
+    """Pair (2, p) each square with others, in cells that rise, from its first to its last cell; None: with all that come after itself."""
+    begin = np.arange(1, len(own) + 1) if first is None else np.searchsorted(cells, first)
+    run, place = runs(np.searchsorted(cells, last, side="right") - begin)
+    return np.stack([own[run], others[begin[run] + place]])
+
+
+def _cells(places: Points, width: float) -> tuple[Ints, int]:
+    """Return the number of the cell each place is in, row by row with an empty cell around all, and by how much the cell above differs."""
+    column, row = (np.floor((part - part.min()) / width).astype(np.int64) + 1 for part in (places.real, places.imag))
+    above = int(column.max()) + 2
+    return row * above + column, above
+
+
+def _around(cell: Ints, above: int, chosen: Bools) -> Bools:
+    """Tell which of all squares lie in the cell of a chosen one, or in one beside it."""
+    marked = np.zeros(int(cell.max()) + 2 + above, bool)
+    hit = cell[chosen]
+    for up in (-above, 0, above):
+        for right in (-1, 0, 1):
+            marked[hit + up + right] = True
+    return marked[cell]
 
 
 def _distance(a: Points, b: Points, c: Points, d: Points) -> Floats:

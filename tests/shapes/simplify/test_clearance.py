@@ -11,7 +11,7 @@ import specimens
 
 from img2tri.shapes.place.placement import place_outlines
 from img2tri.shapes.simplify import clearance
-from img2tri.shapes.simplify.clearance import GAP, _around, crowded_chords, sharp_chords, to_segment
+from img2tri.shapes.simplify.clearance import GAP, _around, _cells, crowded_chords, sharp_chords, to_segment
 from img2tri.shapes.simplify.simplification import space_evenly
 from img2tri.shapes.trace.crack_edges import find_crack_edges
 from img2tri.types import Frame
@@ -120,23 +120,23 @@ def test_no_place_within_reach_is_left_out_and_none_far_away_is_looked_at(reach)
     for count in (1, 20):
         chosen = np.isin(np.arange(2000), rng.choice(2000, count, replace=False))
         away = np.abs(places[:, None] - places[chosen]).min(axis=1)
-        found = _around(places, reach, chosen)
+        found = _around(*_cells(places, reach), chosen)
         assert found[away <= reach].all()
         assert not found[away > 2 * np.sqrt(2) * reach].any()
 
 
 @pytest.mark.parametrize("count", [0, 1, 7, 300])
-def test_few_pairs_are_found_as_many_are(monkeypatch, count):
+@pytest.mark.parametrize("longest", [3, 40])
+def test_the_pairs_that_are_found_are_those_of_which_all_are_looked_at(count, longest):
     rng = np.random.default_rng(count)
     a = rng.uniform(0, 60, 300) + 1j * rng.uniform(0, 60, 300)
-    b = a + rng.exponential(3, 300) * np.exp(2j * np.pi * rng.uniform(size=300))
-    reach, fresh = rng.uniform(0, 1, 300), np.arange(300) < count
-    found = []
-    for few in (0, 10**9):
-        monkeypatch.setattr(clearance, "FEW", few)
-        pairs = [tuple(sorted(pair)) for pair in np.transpose(clearance._within(a, b, reach, fresh)).tolist()]
-        assert len(set(pairs)) == len(pairs)
-        found.append(set(pairs))
-    assert found[0] == found[1]
-    assert bool(found[0]) == (count > 0)
-    assert all(fresh[i] or fresh[j] for i, j in found[0])
+    b = a + rng.exponential(longest, 300) * (rng.random(300) < 0.3) * np.exp(2j * np.pi * rng.uniform(size=300))
+    reach, fresh = rng.uniform(0.01, 1, 300), np.arange(300) < count
+    pairs = [tuple(sorted(pair)) for pair in np.transpose(clearance._within(a, b, reach, fresh)).tolist()]
+    middle, meet = (a + b) / 2, np.ones((300, 300), bool)
+    for part in ("real", "imag"):
+        half = np.abs(getattr(b - a, part)) / 2 + reach
+        meet &= np.abs(getattr(middle[:, None] - middle, part)) <= half[:, None] + half
+    i, j = np.nonzero(np.triu(meet & (fresh[:, None] | fresh), 1))
+    assert len(set(pairs)) == len(pairs)
+    assert set(pairs) == set(zip(i.tolist(), j.tolist(), strict=True))
