@@ -57,6 +57,8 @@ class Plan:
     level, gray
         Values strictly greater are foreground; None for label maps. Whether gray values place the outlines, at `place`, or at the middle
         between both sides if that is None.
+    gaps, hues
+        Whether pixels are missing anywhere, and whether labels are colours other than gray ones.
     options
         All options in use, lengths as numbers in world units.
     """
@@ -68,6 +70,14 @@ class Plan:
     gray: bool = False
     place: float | None = None
     options: dict[str, Any] = field(default_factory=dict)
+    gaps: bool = False
+    hues: bool = False
+
+    @property
+    def lengths(self) -> Floats | None:
+        """Edge lengths for each pixel, if they were given so."""
+        given = self.options["edge_length"]
+        return given if isinstance(given, np.ndarray) else None
 
     @property
     def grid(self) -> tuple[int, int]:
@@ -149,16 +159,18 @@ def refuse_by_blocks(o: dict[str, Any]) -> None:
     for name, why in REFUSED_BY_BLOCKS.items():
         if o[name] != OPTIONS[name].default:
             raise ParameterError(f"{name}: expected to be left out for an image by blocks, found {o[name]!r}; {why}")
-    if not (o["edge_length"] is None or isinstance(o["edge_length"], (str, int, float, dict))):
-        raise ParameterError("edge_length: expected one length, or lengths by label, for an image by blocks; a field takes it as a whole")
+    if callable(o["edge_length"]):
+        raise ParameterError(
+            "edge_length: expected one length, lengths by label, or an array (h, w) of lengths for an image by blocks, found a function; "
+            "give its values at all pixels, or mesh the image as a whole"
+        )
 
 
-def planned(
-    frame: Frame, options: dict[str, Any], meshed: int, *, level: float | None = None, gray: bool = False, place: float | None = None
-) -> Plan:
+def planned(frame: Frame, options: dict[str, Any], meshed: int, **decided: Any) -> Plan:
     """Return how an image is meshed of which so many pixels are; lengths become numbers in world units.
 
-    The default edge length is that of an image in memory, but never so long that blocks of several would have to be larger.
+    `decided` are what else a plan has. The default edge length is that of an image in memory, but never so long that blocks of several
+    would have to be larger.
     """
     o = dict(options)
     for name in LENGTH_OPTIONS:
@@ -166,6 +178,12 @@ def planned(
     if isinstance(o["edge_length"], dict):
         o["edge_length"] = {label: frame.length("edge_length", length) for label, length in o["edge_length"].items()}
         longest = max(o["edge_length"].values()) / frame.pixel
+    elif isinstance(o["edge_length"], np.ndarray):
+        if o["edge_length"].shape != frame.shape:
+            raise ParameterError(
+                f"edge_length: expected an array of shape {frame.shape}, that of the image, found {o['edge_length'].shape}"
+            )
+        longest = float(np.max(o["edge_length"])) / frame.pixel
     elif o["edge_length"] is not None:
         o["edge_length"] = frame.length("edge_length", o["edge_length"])
         longest = o["edge_length"] / frame.pixel
@@ -176,4 +194,4 @@ def planned(
             longest = min(longest, DEFAULT_LONGEST)
             o["edge_length"] = longest * frame.pixel
     margin = MARGIN_EDGES * longest
-    return Plan(frame, block_size(margin), margin, level, gray, place, o)
+    return Plan(frame, block_size(margin), margin, options=o, **decided)

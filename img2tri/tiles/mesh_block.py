@@ -167,7 +167,10 @@ def window_mesh(zones: Segmentation, plan: Plan, rows: slice, columns: slice) ->
         return Piece.empty(), None
     frame = Frame(zones.labels.shape, whole.spacing, (0.0, 0.0), whole.upward)
     outlines, dual_edges = trace_outlines(zones, frame, connectivity=o["connectivity"], **of(OutlineOptions, o))
-    sizes = wanted_sizes(labels=zones.labels, dual_edges=dual_edges, frame=frame, **of(SizeOptions, o))
+    lengths = of(SizeOptions, o)
+    if isinstance(lengths["edge_length"], np.ndarray):
+        lengths["edge_length"] = lengths["edge_length"][rows, columns]
+    sizes = wanted_sizes(labels=zones.labels, dual_edges=dual_edges, frame=frame, **lengths)
     within = frame.length("tolerance", o["tolerance"]) / frame.pixel
     made = conform(outlines, dual_edges, sizes, corners=o["corners"], tolerance=within, **of(FillOptions, o))
     # The origin of the plane is where row 0 begins, or where the last row ends.

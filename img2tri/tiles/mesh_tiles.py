@@ -80,7 +80,8 @@ def mesh_tiles(
     ----------
     source
         A path (.zarr and OME-Zarr, .npy, .h5, tiled .tif), or an array with ``shape``, ``dtype`` and slicing: `numpy.memmap`, zarr, h5py,
-        dask, xarray. A mask, gray values or labels, (h, w).
+        dask, xarray. A mask, gray values or labels, (h, w), or colours (h, w, 3). Pixels that are NaN,
+        masked or GDAL's "no data" are not meshed.
     out
         Where to write: ``mesh.zarr``, ``mesh.pvtu`` or ``mesh.vtkhdf``.
     tile
@@ -90,7 +91,7 @@ def mesh_tiles(
     progress
         What is called with the name of a stage and the fraction done, and ends the work if it raises.
     **options
-        Those of `mesh_image`, but for recipe, periodic, interior, smoothing, crop, min_area and largest.
+        Those of `mesh_image`, but for those that take the image as a whole: an error says so.
 
     Returns
     -------
@@ -116,8 +117,7 @@ def mesh_tiles(
     if not target.parent.is_dir():
         raise FileError(f"{target}: expected an existing folder, found none at {target.parent}; make it first")
     tell = progress or (lambda *_: None)
-    image = open_source(source)
-    plan = first_plan(image, options)
+    image, plan = first_plan(open_source(source), options)
 
     tell("survey", 0.0)
     cells = list(plan.cells())
@@ -145,7 +145,8 @@ def mesh_tiles(
 
     tell("save", 0.95)
     report: dict[str, Any] = {
-        "options": plain(plan.options), "level": plan.level, "source": image.name, "shape": plan.frame.shape, "block": plan.block,
+        "options": plain(plan.options, field=plan.lengths),
+        "level": plan.level, "source": image.name, "shape": plan.frame.shape, "block": plan.block,
         "n_vertices": total, "n_triangles": 0, "seam_edges": sum(len(seam.edges) for seam in seams) // 2, "smallest_angle": 180.0,
         "narrow": 0, "distance": max(f["distance"] for f in facts.values()) * plan.frame.pixel,
         "replaced": sum(f["replaced"] for f in facts.values()), "areas": {}, "boundary_edges": 0,

@@ -17,7 +17,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from img2tri.arrays import Bools
 from img2tri.errors import FileError, ImageError, ParameterError, shown
+from img2tri.raster.metadata.nodata import GDAL_NODATA, either, equal_to, present
 
 SOURCE_SUFFIXES = (".zarr", ".npy", ".h5", ".hdf5", ".tif", ".tiff")
 
@@ -30,12 +32,15 @@ class PixelSource:
     ----------
     given
         A path, or an array with ``shape``, ``dtype`` and slicing.
+    box
+        First row and column, rows and columns of the part that is the image; None: all.
     """
 
     given: Any
+    box: tuple[int, int, int, int] | None = None
 
     def __getstate__(self) -> dict[str, Any]:
-        return {"given": self.given}
+        return {"given": self.given, "box": self.box}
 
     @cached_property
     def array(self) -> Any:
@@ -50,33 +55,44 @@ class PixelSource:
     @property
     def shape(self) -> tuple[int, int]:
         """(h, w)."""
-        h, w = self.array.shape
-        return int(h), int(w)
+        return (int(self.array.shape[0]), int(self.array.shape[1])) if self.box is None else self.box[2:]
 
-    def read(self, rows: slice, columns: slice) -> NDArray[Any]:
-        """Read a window.
+    @property
+    def channels(self) -> int:
+        """How many values a pixel has."""
+        return int(self.array.shape[2]) if len(self.array.shape) == 3 else 1
+
+    def read(self, rows: slice, columns: slice) -> tuple[NDArray[Any], Bools | None]:
+        """Read a window: its values, and which pixels (h, w) are not there, NaN, masked or "no data"; None: all are.
 
         Raises
         ------
         FileError
-            If it cannot be read, or is not what the shape says.
+            If it cannot be read, or is not what the shape says; it names the rows and columns.
         """
+        where = f"rows {rows.start} to {rows.stop}, columns {columns.start} to {columns.stop}"
+        expected = (rows.stop - rows.start, columns.stop - columns.start, *self.array.shape[2:])
+        top, left = (0, 0) if self.box is None else self.box[:2]
         try:
-            values = np.ascontiguousarray(self.array[rows, columns])
+            found = self.array[slice(top + rows.start, top + rows.stop), slice(left + columns.start, left + columns.stop)]
+            values, missing = present(found if hasattr(found, "mask") else np.ascontiguousarray(found))
         except Exception as problem:  # whatever a store raises, it is this window that cannot be read
-            raise FileError(f"{self.name}: cannot be read: {type(problem).__name__}: {problem}") from problem
-        expected = rows.stop - rows.start, columns.stop - columns.start
+            raise FileError(f"{self.name}: {where}: cannot be read: {type(problem).__name__}: {problem}") from problem
         if values.shape != expected:
-            raise FileError(f"{self.name}: expected {expected} pixels, found {values.shape}")
-        return values
+            raise FileError(f"{self.name}: {where}: expected pixels of shape {expected}, as its own shape says, found {values.shape}")
+        noted = getattr(self.array, "nodata", None)
+        return values, either(missing, None if noted is None else equal_to(values, noted))
 
-    def digest(self, values: NDArray[Any]) -> str:
-        """Return a hash of pixels."""
-        return hashlib.blake2b(values.tobytes(), digest_size=16).hexdigest()
+
+def digest(values: NDArray[Any], missing: Bools | None) -> str:
+    """Return a hash of pixels."""
+    found = hashlib.blake2b(values.tobytes(), digest_size=16)
+    found.update(b"" if missing is None else missing.tobytes())
+    return found.hexdigest()
 
 
 def open_source(given: Any) -> PixelSource:
-    """Open an image, and check that it is one of one value per pixel.
+    """Open an image, and check that it is one of one value per pixel, or of colours.
 
     Raises
     ------
@@ -94,8 +110,11 @@ def open_source(given: Any) -> PixelSource:
         raise ParameterError(f"source: expected a path, or an array with shape, dtype and slicing, found {shown(given)}")
     source = PixelSource(given)
     shape, dtype = tuple(source.array.shape), np.dtype(source.array.dtype)
-    if len(shape) != 2 or 0 in shape:
-        raise ImageError(f"{source.name}: expected an image (h, w) of one value per pixel, found shape {shape}; give one plane or channel")
+    if len(shape) not in (2, 3) or (len(shape) == 3 and shape[2] != 3) or 0 in shape:
+        raise ImageError(
+            f"{source.name}: expected an image (h, w) of one value per pixel, or (h, w, 3) of colours, found shape {shape}; "
+            "give one plane or channel, or the colours without alpha"
+        )
     if dtype.kind not in "biuf":
         raise ImageError(f"{source.name}: expected bool, integers or floats, found {dtype}")
     return source
@@ -151,29 +170,34 @@ def _tiff(path: Path) -> Any:
     import tifffile
     import zarr
 
+    with tifffile.TiffFile(path) as file:
+        tag = file.pages[0].tags.get(GDAL_NODATA)  # type: ignore[union-attr]
+        colours = file.pages[0].samplesperpixel > 1  # type: ignore[union-attr]
     store = tifffile.imread(path, aszarr=True, level=0)
-    plane = _Plane(zarr.open(store, mode="r"))
+    plane = _Plane(zarr.open(store, mode="r"), colours, None if tag is None else str(tag.value).strip("\0 "))
     weakref.finalize(plane, store.close)
     return plane
 
 
 @dataclass(frozen=True)
 class _Plane:
-    """The last two axes of an array whose others have length 1."""
+    """The last two axes of an array whose others have length 1, or three with colours."""
 
     node: Any
+    colours: bool = False
+    nodata: str | None = None
 
     @property
     def shape(self) -> tuple[int, ...]:
-        shape = tuple(self.node.shape)
-        return shape[-2:] if all(n == 1 for n in shape[:-2]) else shape
+        shape, last = tuple(self.node.shape), 3 if self.colours else 2
+        return shape[-last:] if all(n == 1 for n in shape[:-last]) else shape
 
     @property
     def dtype(self) -> Any:
         return self.node.dtype
 
     def __getitem__(self, window: tuple[slice, slice]) -> Any:
-        return self.node[(0,) * (len(self.node.shape) - 2) + window]
+        return self.node[(0,) * (len(self.node.shape) - len(self.shape)) + window]
 
 
 _READERS = {".zarr": _zarr, ".npy": _npy, ".h5": _hdf5, ".hdf5": _hdf5}

@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from img2tri.raster.labels.segmentation import Segmentation
+from img2tri.arrays import Bools
+from img2tri.raster.labels.colours_to_gray import to_gray
+from img2tri.raster.labels.segmentation import Segmentation, with_gaps
 from img2tri.tiles.block_plan import Plan
 from img2tri.tiles.pixel_source import PixelSource
 from img2tri.types import ColourMix
@@ -36,16 +38,35 @@ def cut_out(zones: Segmentation, rows: slice, columns: slice) -> Segmentation:
 
 def read_regions(source: PixelSource, plan: Plan, rows: slice, columns: slice) -> Segmentation:
     """Read a window, and find the regions in it by what was decided for the whole image."""
-    return segmentation(source.read(rows, columns), plan)
+    return segmentation(*source.read(rows, columns), plan)
 
 
-def segmentation(values: NDArray[Any], plan: Plan) -> Segmentation:
-    """Find the regions of pixels."""
+def segmentation(values: NDArray[Any], missing: Bools | None, plan: Plan) -> Segmentation:
+    """Find the regions of pixels, those being in none that are not there."""
     o = plan.options
     if o["labels"]:
-        numbers = values.astype(np.int64) if values.dtype == np.uint64 else values
-        if o["labels"] is not True:
-            numbers = np.where(np.isin(numbers, o["labels"]), numbers, numbers.dtype.type(o["background"] or 0))
-        return Segmentation(numbers, o["background"])
-    mask = values if plan.level is None else values > plan.level
-    return Segmentation(~mask if o["invert"] else mask, 0, None, values if plan.gray else None, plan.place)
+        numbers, background = label_numbers(values, hues=plan.hues), o["background"]
+        meshed = np.ones((1, 1), bool) if o["labels"] is True else np.isin(numbers, o["labels"])
+        meshed = meshed if missing is None else meshed & ~missing
+        if not meshed.all():
+            dtype = np.result_type(numbers.dtype, np.min_scalar_type(background))
+            numbers = np.where(meshed, numbers, np.asarray(background, dtype))
+        return Segmentation(numbers, background)
+    gray = values if values.ndim == 2 else to_gray(values)
+    mask = gray if plan.level is None else gray > plan.level
+    mask = ~mask if o["invert"] else mask
+    if missing is not None:
+        mask = mask & ~missing
+    if plan.gaps:
+        gray = with_gaps(gray, np.zeros(gray.shape, bool) if missing is None else missing)
+    return Segmentation(mask, 0, None, gray if plan.gray else None, plan.place)
+
+
+def label_numbers(values: NDArray[Any], *, hues: bool) -> NDArray[Any]:
+    """Return the labels of pixels; `hues`: as numbers 0xRRGGBB, as the image has other colours than gray ones."""
+    if values.ndim == 3 and hues:
+        red, green, blue = (values[..., channel].astype(np.int64) for channel in range(3))
+        bits = 8 * values.dtype.itemsize
+        return np.asarray(red << 2 * bits | green << bits | blue)
+    one = values if values.ndim == 2 else values[..., 0]
+    return one.astype(np.int64) if one.dtype.kind == "f" or one.dtype == np.uint64 else one.view(np.uint8) if one.dtype == bool else one

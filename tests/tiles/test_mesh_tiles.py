@@ -92,18 +92,30 @@ def test_the_bits_are_the_same_whatever_the_tile_size_and_in_memory(tmp_path):
         assert in_bytes(load_tiles(made.path)) == bits(in_memory)
 
 
-@pytest.mark.parametrize(
-    "options",
-    [
-        {"edge_length": 4.0, "labels": True, "spacing": (0.5, 0.7)},
-        {"edge_length": {1: 3.0, 2: 5.0, 3: 4.0}, "labels": [1, 2, 3], "origin": "upper"},
-        {"threshold": 1, "tolerance": 0.8, "elements_across": 2.0, "edge_length": 4.0, "invert": True},
-    ],
-)
-def test_options_mean_the_same_in_memory_and_by_tiles(options, tmp_path):
-    labels = (blobs(180) + 2 * blobs(180, seed=1)).astype(np.uint8)
-    made = mesh_tiles(labels, tmp_path / "mesh.zarr", **options)
-    assert in_bytes(load_tiles(made.path)) == bits(mesh_image(labels, blocks=True, **options))
+LABELS = (blobs(180) + 2 * blobs(180, seed=1)).astype(np.uint8)
+WITH_GAPS = np.where(np.hypot(*np.mgrid[-60:120, -70:110]) < 25, np.nan, ndimage.gaussian_filter(LABELS.astype(float), 2))
+COLOURS = np.array([[0, 0, 0], [200, 30, 30], [30, 200, 30], [30, 30, 200]], np.uint8)[LABELS]
+CASES = {
+    "labels": (LABELS, {"edge_length": "4px", "labels": True, "spacing": (0.5, 0.7)}),
+    "some labels": (LABELS, {"edge_length": {1: 3.0, 2: 4.0, 3: 4.0}, "labels": [1, 2, 3], "origin": "upper"}),
+    "gray": (LABELS, {"threshold": 1, "tolerance": 0.8, "elements_across": 2.0, "edge_length": 4.0, "invert": True}),
+    "crop": (LABELS, {"edge_length": 4.0, "labels": True, "crop": (10, 20.5, 170, 175), "origin": (3, 4)}),
+    "colours": (COLOURS, {"edge_length": 4.0, "labels": True}),
+    "a colour": (COLOURS, {"edge_length": 4.0, "labels": [0xC81E1E], "background": 0}),
+    "luminance": (COLOURS, {"edge_length": 4.0, "threshold": 80}),
+    "gaps": (WITH_GAPS, {"edge_length": 4.0, "threshold": 1.2}),
+    "gaps in labels": (np.where(np.isnan(WITH_GAPS), np.nan, LABELS), {"edge_length": 4.0, "labels": True}),
+    "masked": (np.ma.masked_array(LABELS, LABELS == 2), {"edge_length": 4.0, "threshold": 0}),
+    "lengths": (LABELS, {"labels": True, "edge_length": 2.5 + np.mgrid[:180, :180][1] / 120}),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_images_and_options_mean_the_same_in_memory_and_by_tiles(name, tmp_path):
+    image, options = CASES[name]
+    made = mesh_tiles(image, tmp_path / "mesh.zarr", **options)
+    assert made.report["seam_edges"] > 10
+    assert in_bytes(load_tiles(made.path)) == bits(mesh_image(image, blocks=True, **options))
 
 
 @pytest.mark.parametrize("options", [{}, {"edge_length": 5.0}, {"spacing": 0.25, "origin": (3, 4), "corners": "keep"}])
@@ -198,6 +210,12 @@ def test_errors_name_what_is_wrong(tmp_path):
         mesh_tiles(Broken(), tmp_path / "mesh.zarr")
     with pytest.raises(ImageError, match="found shape"):
         mesh_tiles(np.zeros((3, 4, 5)), tmp_path / "mesh.zarr")
+    with pytest.raises(ImageError, match="looks like a label map"):
+        mesh_tiles(np.kron(LABELS[:50, :50], np.ones((3, 3), np.uint8)), tmp_path / "mesh.zarr")
+    with pytest.raises(ParameterError, match="background: expected a label that pixels which are not there get"):
+        mesh_tiles(CASES["gaps in labels"][0], tmp_path / "mesh.zarr", labels=True, background=None)
+    with pytest.raises(ParameterError, match="edge_length: expected an array of shape"):
+        mesh_tiles(LABELS, tmp_path / "mesh.zarr", edge_length=np.ones((3, 4)))
     with pytest.raises(ImageError, match="expected pixels to mesh"):
         mesh_tiles(np.zeros((30, 40), bool), tmp_path / "mesh.zarr")
     with pytest.raises(ParameterError, match="periodic: expected to be left out"):

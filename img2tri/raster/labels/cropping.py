@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from img2tri.errors import ParameterError, finite, shown
-from img2tri.types import Picture
+from img2tri.types import Frame, Picture
 
 SIDE_ROUNDING = 1e-6  # px: a side this close to a side of pixels is meant to lie on it
 
@@ -54,7 +54,15 @@ def crop(picture: Picture, box: Sequence[float] | None) -> Picture:
     """
     if box is None:
         return picture
-    frame = picture.frame
+    part, rows, columns = frame_within(picture.frame, box)
+    values = np.array(picture.values[slice(*rows), slice(*columns)], order="C")
+    missing = None if picture.missing is None else np.array(picture.missing[slice(*rows), slice(*columns)], order="C")
+    notes = picture.notes | {"crop": {"rows": rows, "columns": columns, "of": picture.frame.shape}}
+    return dataclasses.replace(picture, values=values, frame=part, notes=notes, missing=missing)
+
+
+def frame_within(frame: Frame, box: Sequence[float]) -> tuple[Frame, tuple[int, int], tuple[int, int]]:
+    """Return where the part within a box lies, and its rows and columns, each as the first and the one after the last; see `crop`."""
     left, bottom, right, top = _numbers(box)
     if not (left < right and bottom < top):
         raise ParameterError(f"crop: expected left < right and bottom < top, found {(left, bottom, right, top)}")
@@ -66,10 +74,7 @@ def crop(picture: Picture, box: Sequence[float] | None) -> Picture:
     rows = (h - end_up, h - first_up) if frame.upward else (first_up, end_up)
     columns = (first_column, end_column)
     part = dataclasses.replace(frame, shape=(rows[1] - rows[0], columns[1] - columns[0]), corner=(x + first_column * dx, y + first_up * dy))
-    values = np.array(picture.values[slice(*rows), slice(*columns)], order="C")
-    missing = None if picture.missing is None else np.array(picture.missing[slice(*rows), slice(*columns)], order="C")
-    notes = picture.notes | {"crop": {"rows": rows, "columns": columns, "of": (h, w)}}
-    return dataclasses.replace(picture, values=values, frame=part, notes=notes, missing=missing)
+    return part, rows, columns
 
 
 def _numbers(box: Sequence[float]) -> tuple[float, float, float, float]:

@@ -129,7 +129,7 @@ def segment(
         found = _silhouette(alpha, picture.missing, invert=invert)
     else:
         if threshold is None:
-            _check_thresholdable(without_hidden(picture.values, gone))
+            check_thresholdable(without_hidden(picture.values, gone))
         found = _foreground(picture, gone, threshold=threshold, invert=invert)
     lines = thin_separators(found.labels) if labels and absorb is None else []
     if lines:
@@ -189,14 +189,14 @@ def _by_levels(picture: Picture, gone: Bools | None, levels: Sequence[float], ba
     gray = _gray(picture, gone)
     numbers = label_map(np.searchsorted(levels, gray).astype(np.int32), background=background, missing=gone)
     at = tuple(math.floor(level) + 0.5 if gray.dtype.kind in "iu" else level for level in levels)
-    return Segmentation(numbers.values, numbers.background, Level(tuple(levels), "given"), _with_gaps(gray, gone), at)
+    return Segmentation(numbers.values, numbers.background, Level(tuple(levels), "given"), with_gaps(gray, gone), at)
 
 
 def _gray(picture: Picture, gone: Bools | None) -> NDArray[Any]:
     return to_gray(_opaque(picture, gone), palette=picture.notes.get("palette"), min_is_white="min_is_white" in picture.notes)
 
 
-def _with_gaps(gray: NDArray[Any], gone: Bools | None) -> NDArray[Any]:
+def with_gaps(gray: NDArray[Any], gone: Bools | None) -> NDArray[Any]:
     """Return gray values with NaN where no pixel is."""
     return gray if gone is None else np.where(gone, np.nan, gray)
 
@@ -213,10 +213,10 @@ def _foreground(picture: Picture, gone: Bools | None, *, threshold: float | str 
     if two_valued(seen) or chosen.how not in ("given", "otsu"):
         return Segmentation(mask, 0, chosen)
     if chosen.how == "otsu":
-        return Segmentation(mask, 0, chosen, _with_gaps(gray, gone))
+        return Segmentation(mask, 0, chosen, with_gaps(gray, gone))
     # Strictly greater is foreground: of whole numbers the level lies between two.
     at = math.floor(chosen.value) + 0.5 if gray.dtype.kind in "iu" else chosen.value
-    return Segmentation(mask, 0, chosen, _with_gaps(gray, gone), at)
+    return Segmentation(mask, 0, chosen, with_gaps(gray, gone), at)
 
 
 def _silhouette(alpha: NDArray[Any] | None, missing: Bools | None, *, invert: bool) -> Segmentation:
@@ -227,7 +227,7 @@ def _silhouette(alpha: NDArray[Any] | None, missing: Bools | None, *, invert: bo
     mask = (alpha >= chosen.value) != invert
     if missing is not None:
         mask &= ~missing
-    gray = _with_gaps(alpha, missing)
+    gray = with_gaps(alpha, missing)
     notes = (SILHOUETTE,) * (not invert)
     return Segmentation(mask, 0, chosen, notes=notes) if two_valued(alpha) else Segmentation(mask, 0, chosen, gray, chosen.value, notes)
 
@@ -246,7 +246,7 @@ def _listed(values: NDArray[Any], *, colours: bool) -> str:
     return ", ".join([*first, *["..."] * (len(values) > LISTED_VALUES)])
 
 
-def _check_thresholdable(values: NDArray[Any]) -> None:
+def check_thresholdable(values: NDArray[Any]) -> None:
     """Refuse to choose a threshold for what looks like a label map."""
     found = flat_values(values)
     if found is not None:
