@@ -144,6 +144,8 @@ def checked_names(names: Mapping[int, str] | None) -> dict[int, str]:
     for label, name in names.items():
         if isinstance(label, bool) or not hasattr(label, "__index__") or not (isinstance(name, str) and name):
             raise ParameterError(f"names: expected whole numbers with names, like {{1: 'bone'}}, found {label!r}: {name!r}")
+        if re.search(r"[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff]", name):
+            raise ParameterError(f"names: expected letters that can be written, found {name!r}")
     return {int(label): name for label, name in names.items()}
 
 

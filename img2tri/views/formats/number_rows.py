@@ -12,8 +12,28 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from img2tri.errors import ParameterError
+
+EXACT = 2**53  # up to here a float64 holds all whole numbers
 _ROWS = 4096  # filled into one template at once
 _DIGITS = 4  # taken at once from a table of all groups of so many
+
+
+def exact_doubles(name: str, values: NDArray[Any]) -> NDArray[np.float64]:
+    """Return values as float64, or say that whole numbers among them would lose digits.
+
+    Examples
+    --------
+    >>> exact_doubles("ids", np.array([2**53 + 1]))
+    Traceback (most recent call last):
+    ...
+    img2tri.errors.ParameterError: ids: expected whole numbers up to 2^53, which is all a double holds, found 9007199254740993
+    """
+    if values.dtype.kind in "iu" and values.size:
+        largest = max(int(values.max()), -int(values.min()))
+        if largest > EXACT:
+            raise ParameterError(f"{name}: expected whole numbers up to 2^53, which is all a double holds, found {largest}")
+    return values.astype(np.float64)
 
 
 def whole_rows(array: NDArray[np.integer[Any]], between: str = " ", *, before: str = "", after: str = "") -> str:

@@ -6,14 +6,16 @@ import; and rather than by VTK, which drops the cell data. The bytes depend on t
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from img2tri.views.formats.number_rows import real_rows, whole_rows
+from img2tri.views.formats.number_rows import EXACT, exact_doubles, real_rows, whole_rows
 from img2tri.views.objects.flat_or_extruded import Surface
+from img2tri.views.objects.sets.numbers_in_files import file_numbers
 
 _STL_FACE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
@@ -33,16 +35,25 @@ def stl(made: Surface) -> bytes:
 def ply(made: Surface) -> bytes:
     """Binary PLY: float64 coordinates; for each face an int `region` and all cell data, whole numbers as int; texts as comments.
 
+    Labels that neither int nor double holds are numbered anew, with a comment ``labels`` of these by their numbers.
+
     Values of points are properties of theirs; arrays of several columns become a property each, such as ``flow_1``.
     """
-    faces, points = _columns({"region": made.regions, **made.cell_data}), _columns(made.point_data)
+    regions, notes = made.regions, _one_line_notes(made)
+    if np.abs(regions.astype(np.float64)).max() > EXACT:
+        # No number of the format holds these labels.
+        labels, which = np.unique(regions, return_inverse=True)
+        numbers = file_numbers(labels.tolist())
+        regions = np.array([numbers[label] for label in labels.tolist()])[which]
+        notes.append(f"labels: {json.dumps({number: label for label, number in numbers.items()})}")
+    faces, points = _columns({"region": regions, **made.cell_data}), _columns(made.point_data)
     # A row per face: 3, its corners, its values, without gaps; and per point its coordinates and values.
     face_rows = _table({"count": np.full(len(made.faces), 3, "u1"), "corners": made.faces.astype("<i4")}, faces)
     point_rows = _table({"place": made.points.astype("<f8")}, points)
     header = [
         "ply",
         "format binary_little_endian 1.0",
-        *(f"comment {note}" for note in _one_line_notes(made)),
+        *(f"comment {note}" for note in notes),
         f"element vertex {len(made.points)}",
         *(f"property double {axis}" for axis in "xyz"),
         *_properties(points),
@@ -60,7 +71,7 @@ def _columns(arrays: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
     for name, values in arrays.items():
         plain = "_".join(name.split())
         parts = {plain: values} if values.ndim == 1 else {f"{plain}_{i}": column for i, column in enumerate(values.T, 1)}
-        found |= {each: column.astype("<i4" if _fits_int32(column) else "<f8") for each, column in parts.items()}
+        found |= {each: column.astype("<i4") if _fits_int32(column) else exact_doubles(name, column) for each, column in parts.items()}
     return found
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from img2tri.arrays import Floats, Ints
+from img2tri.views.objects.sets.numbers_in_files import LARGEST_LABEL
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +64,7 @@ def commented(lines: str, mark: str) -> dict[str, str]:
 def labels_of(numbers: Ints, names: Mapping[int, str], texts: Mapping[str, str]) -> tuple[Ints, dict[int, str]]:
     """Return the labels of cells from the numbers of their groups, and the names by label.
 
-    A region that has no name of its own is called by its label, and those of other regions that are no such numbers are in a table.
+    Labels that cannot be such numbers are in a table, or in the name of a region that has none of its own.
 
     Examples
     --------
@@ -77,8 +78,9 @@ def labels_of(numbers: Ints, names: Mapping[int, str], texts: Mapping[str, str])
     each, which = np.unique(numbers, return_inverse=True)
     labels = {}
     for number in each.tolist():
-        own = re.fullmatch(r"region_(-?\d+)", names.get(number, ""))
-        labels[number] = int(own[1]) if own else known.get(names.get(number, ""), number)
+        name = names.get(number, "")
+        own = re.fullmatch(r"region_(-?\d+)", name)
+        labels[number] = known.get(name, int(own[1]) if own and not 1 <= int(own[1]) <= LARGEST_LABEL else number)
     called = {labels[number]: name for number, name in names.items() if number in labels}
     return np.array([labels[number] for number in each.tolist()], np.int64)[which.ravel()], called
 

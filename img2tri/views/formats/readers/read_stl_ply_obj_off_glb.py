@@ -6,6 +6,7 @@ Whether the triangles are a plane mesh is for `img2tri.views.formats.save_load.l
 from __future__ import annotations
 
 import io
+import json
 import re
 from typing import TYPE_CHECKING, Any
 
@@ -42,8 +43,17 @@ def by_trimesh(data: bytes, suffix: str) -> tuple[NDArray[Any], NDArray[Any], ND
     if suffix == ".stl" or len(regions) > 1:
         place = coincident_points(corners)
         corners, joined = corners[np.unique(place, return_index=True)[1]], place[joined]
-    labels = [part for part in regions if part is not None]
+    labels = [_by_table(part, data) for part in regions if part is not None]
     return corners, joined, np.concatenate(labels) if labels and len(labels) == len(regions) else None
+
+
+def _by_table(numbers: NDArray[Any], data: bytes) -> NDArray[Any]:
+    """Return the labels of regions that a PLY has numbered anew, as its comment ``labels`` tells."""
+    table = re.search(rb"^comment labels: (\{.*\})$", data.partition(b"end_header")[0], re.MULTILINE)
+    if not data.startswith(b"ply") or table is None:
+        return numbers
+    known = {int(number): int(label) for number, label in json.loads(table[1]).items()}
+    return np.array([known.get(number, number) for number in numbers.astype(np.int64).tolist()], np.int64)
 
 
 def _face_regions(name: str, part: trimesh.Trimesh) -> NDArray[Any] | None:

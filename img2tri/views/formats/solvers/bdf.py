@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from img2tri.arrays import Floats
-from img2tri.views.formats.solvers.plain_text import MARK, comment_lines, fitted_numbers, label_table
+from img2tri.views.formats.solvers.plain_text import MARK, comment_lines, distinct, fitted_numbers, label_table, unquoted
 from img2tri.views.objects.solver_cells import Cells
 
 # Card of each kind, and its order of the nodes where that is not the one of VTK: upright edges come before those of the top.
@@ -29,16 +29,17 @@ def bdf(made: Cells) -> dict[str, bytes]:
     dict
         The bytes of the file, under "".
     """
-    lines = [f"$ {MARK}", *comment_lines(made.texts | label_table(made), "$ "), "CEND", "BEGIN BULK", *_grid_cards(made.points)]
+    called = distinct([*made.names.values(), *made.sides], unquoted)
+    lines = [f"$ {MARK}", *comment_lines(made.texts | label_table(made, called), "$ "), "CEND", "BEGIN BULK", *_grid_cards(made.points)]
     cells = made.cells[:, NASTRAN_ORDERS.get(made.kind, slice(None))] + 1
     for label, mine in made.members().items():
         number = made.ids[label]
-        lines.append(f"$HMNAME COMP {number:>19}{_quoted(made.names[label])}")
+        lines.append(f'$HMNAME COMP {number:>19}"{called[made.names[label]]}"')
         table = np.column_stack([mine + 1, np.full(len(mine), number), cells[mine]])
         lines += map(_template(_CARDS[made.kind], table.shape[1], number).__mod__, map(tuple, table.tolist()))
     for name in made.sides:
         tag, nodes = made.tags[name], (np.unique(made.facets(name)) + 1).tolist()
-        lines.append(f"$HMSET {tag:>8} {1:>8} {_quoted(name)}")
+        lines.append(f'$HMSET {tag:>8} {1:>8} "{called[name]}"')
         lines.append(_template("SET1", 1 + len(nodes), tag) % (tag, *nodes))
     return {"": ("\n".join(line.rstrip() for line in [*lines, "ENDDATA"]) + "\n").encode("ascii", "backslashreplace")}
 
@@ -56,8 +57,3 @@ def _template(card: str, count: int, largest: int) -> str:
     width, each, mark = (2 * _WIDTH, _FIELDS // 2, "*") if wide else (_WIDTH, _FIELDS, "")
     lines = [f"%-{width}d" * min(each, count - i) for i in range(0, count, each)]
     return f"{card + mark:<{_WIDTH}}" + f"\n{mark or '+':<{_WIDTH}}".join(lines)
-
-
-def _quoted(name: str) -> str:
-    """Return a name in double quotes."""
-    return '"' + " ".join(name.replace('"', "'").split()) + '"'

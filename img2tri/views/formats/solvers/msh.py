@@ -21,8 +21,8 @@ from numpy.typing import NDArray
 
 from img2tri.arrays import Floats, Ints
 from img2tri.errors import ParameterError
-from img2tri.views.formats.number_rows import real_rows, whole_rows
-from img2tri.views.formats.solvers.plain_text import MARK, comment_lines, label_table
+from img2tri.views.formats.number_rows import exact_doubles, real_rows, whole_rows
+from img2tri.views.formats.solvers.plain_text import MARK, comment_lines, distinct, label_table, unquoted
 from img2tri.views.objects.periodic_nodes import node_pairs
 from img2tri.views.objects.solver_cells import Cells
 
@@ -67,14 +67,15 @@ def msh(made: Cells, *, version: str = "4.1") -> dict[str, bytes]:
     if version not in VERSIONS:
         raise ParameterError(f"version: expected '4.1' or '2.2', found {version!r}")
     inside, members = 3 if made.solid else 2, made.members()
-    names = [(inside - 1, made.tags[name], name) for name in made.sides if version == "4.1" or name not in made.part_of]
-    names += [(inside, made.ids[label], name) for label, name in made.names.items()]
+    called = distinct([*made.names.values(), *made.sides], unquoted)
+    names = [(inside - 1, made.tags[name], called[name]) for name in made.sides if version == "4.1" or name not in made.part_of]
+    names += [(inside, made.ids[label], called[name]) for label, name in made.names.items()]
     entities = _entities(made, members)
     lines = ["$MeshFormat", f"{version} 0 8", "$EndMeshFormat"]
-    pieces = {name: made.tags[name] for name in made.part_of} if version == "2.2" else {}
-    notes = made.texts | label_table(made) | ({"pieces": json.dumps(pieces)} if pieces else {})
+    pieces = {called[name]: made.tags[name] for name in made.part_of} if version == "2.2" else {}
+    notes = made.texts | label_table(made, called) | ({"pieces": json.dumps(pieces)} if pieces else {})
     lines += ["$Comments", MARK, *comment_lines(notes, ""), "$EndComments"]
-    lines += ["$PhysicalNames", str(len(names)), *(f'{d} {number} "{_unquoted(name)}"' for d, number, name in names), "$EndPhysicalNames\n"]
+    lines += ["$PhysicalNames", str(len(names)), *(f'{d} {number} "{name}"' for d, number, name in names), "$EndPhysicalNames\n"]
     body = _write_version_4(made.points, entities) if version == "4.1" else _write_version_2(made.points, entities)
     # Some readers want values of all elements: facets have those of their cells.
     split = set(made.part_of.values())
@@ -152,16 +153,11 @@ def _periodic(made: Cells, version: str) -> str:
 
 def _data(section: str, name: str, values: NDArray[Any]) -> str:
     """Write values of all elements, or nodes: texts, a time, then step, components and count; and a line for each."""
-    array = values.reshape(len(values), -1).astype(np.float64)
+    array = exact_doubles(name, values.reshape(len(values), -1))
     width = next((c for c in (1, 3, 9) if c >= array.shape[1]), 0)
     if not width:
         raise ParameterError(f"{name}: expected at most 9 values each for .msh, found {array.shape[1]}; take it apart")
     array = np.pad(array, ((0, 0), (0, width - array.shape[1])))
     numbers, texts = whole_rows(np.arange(1, len(array) + 1)[:, None]).split("\n"), real_rows(array).split("\n")
     lines = "".join(f"{number} {text}\n" for number, text in zip(numbers[:-1], texts[:-1], strict=True))
-    return f'${section}\n1\n"{_unquoted(name)}"\n1\n0.0\n3\n0\n{width}\n{len(array)}\n{lines}$End{section}\n'
-
-
-def _unquoted(name: str) -> str:
-    """Return a name as it can stand in double quotes."""
-    return " ".join(name.replace('"', "'").split())
+    return f'${section}\n1\n"{unquoted(name)}"\n1\n0.0\n3\n0\n{width}\n{len(array)}\n{lines}$End{section}\n'

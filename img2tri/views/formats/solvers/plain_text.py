@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import re
 import unicodedata
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import chain, count
 from typing import Any
 
@@ -111,8 +111,35 @@ def comment_lines(texts: Mapping[str, str], mark: str) -> list[str]:
     return lines
 
 
-def label_table(made: Cells) -> dict[str, str]:
+def distinct(names: Iterable[str], fit: Callable[[str], str]) -> dict[str, str]:
+    """Return for each name what a format can hold of it, no two alike.
+
+    Examples
+    --------
+    >>> distinct(["a b", "a  b", "c"], lambda name: " ".join(name.split()))
+    {'a b': 'a b', 'a  b': 'a b_2', 'c': 'c'}
+    """
+    found: dict[str, str] = {}
+    names = list(names)
+    taken = {name for name in names if fit(name) == name}
+    for name in names:
+        plain = fit(name)
+        if plain != name:
+            plain = next(word for word in chain([plain], (f"{plain}_{i}" for i in count(2))) if word not in taken)
+        taken.add(plain)
+        found[name] = plain
+    return found
+
+
+def unquoted(name: str) -> str:
+    """Return a name in one line, as it can stand in double quotes."""
+    return " ".join(name.replace('"', "'").split())
+
+
+def label_table(made: Cells, called: Mapping[str, str] | None = None) -> dict[str, str]:
     """Return a note of the labels of regions that have another number in files, by their names; nothing if there are none.
+
+    Names that read as the number of another region are there too; `called` are the names in the file, where these differ.
 
     Examples
     --------
@@ -120,7 +147,9 @@ def label_table(made: Cells) -> dict[str, str]:
     >>> label_table(flat_cells([[0, 0], [1, 0], [0, 1]], [[0, 1, 2]], [-7]))
     {'labels': '{"region_-7": -7}'}
     """
-    others = {made.names[label]: label for label, number in made.ids.items() if label != number}
+    own = {label: (called or {}).get(name, name) for label, name in made.names.items()}
+    odd = {label for label, name in own.items() if re.fullmatch(r"region_-?\d+", name) and name != f"region_{label}"}
+    others = {own[label]: label for label, number in made.ids.items() if label != number or label in odd}
     return {"labels": json.dumps(others)} if others else {}
 
 

@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from img2tri.arrays import Floats, Ints
 from img2tri.errors import FileError
+from img2tri.views.formats.solvers.plain_text import distinct
 from img2tri.views.formats.vtp_vtu import VTK_TYPES, vtu_file
 from img2tri.views.objects.solver_cells import Cells
 
@@ -64,10 +65,11 @@ def grid_of(
 
     grid = pyvista.UnstructuredGrid({VTK_TYPES[kind]: cells}, points)
     grid.cell_data["region"] = as_regions(regions)
+    called = distinct([*names.values(), *facets], array_name)
     for label, name in names.items():
-        grid.field_data[array_name(name)] = np.array([label])
+        grid.field_data[called[name]] = np.array([label])
     for name, nodes in facets.items():
-        grid.field_data[array_name(name)] = nodes
+        grid.field_data[called[name]] = nodes
     return grid
 
 
@@ -79,8 +81,9 @@ def vtu(made: Cells) -> dict[str, bytes]:
     dict
         The bytes of the file, under "".
     """
-    fields = {array_name(name): np.array([label]) for label, name in made.names.items()}
-    fields |= {array_name(name): made.facets(name) for name in made.sides}
+    called = distinct([*made.names.values(), *made.sides], array_name)
+    fields = {called[name]: np.array([label]) for label, name in made.names.items()}
+    fields |= {called[name]: made.facets(name) for name in made.sides}
     cell_data = {**made.cell_data, "region": as_regions(made.regions)}
     whole = vtu_file(
         made.points, made.cells, made.kind, cell_data=cell_data, point_data=made.point_data, field_data=fields, texts=made.texts

@@ -16,7 +16,7 @@ FRAME = ("left", "right", "bottom", "top")
 OUTER = "outer"
 Z_MIN, Z_MAX = "z_min", "z_max"  # of solids
 _OTHERS = 11  # the first of the other sets
-_LARGEST_LABEL = 2_000_000_000  # most programs keep numbers in 32 bits; the rest is for labels that are larger, and for sets
+LARGEST_LABEL = 2_000_000_000  # most programs keep numbers in 32 bits; the rest is for labels that are larger, and for sets
 
 
 def file_numbers(labels: Iterable[int]) -> dict[int, int]:
@@ -30,7 +30,7 @@ def file_numbers(labels: Iterable[int]) -> dict[int, int]:
     {-3: 3, 2: 2, 720575940610453042: 4}
     """
     labels = list(labels)
-    kept = [label for label in labels if 1 <= label <= _LARGEST_LABEL]
+    kept = [label for label in labels if 1 <= label <= LARGEST_LABEL]
     others = sorted(set(labels).difference(kept))
     number = {label: label for label in kept} | {label: max(0, 0, *kept) + i for i, label in enumerate(others, 1)}
     return {label: number[label] for label in labels}
