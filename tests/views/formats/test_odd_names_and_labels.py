@@ -13,8 +13,8 @@ from img2tri import ParameterError, TriangleMesh
 
 NAMES = {
     1: "a b", 2: "naïve", 3: 'q"uo\'te', 4: "com,ma", 5: "new\nline", 6: "骨", 7: "<x>&y", 8: "q'uo'te", 9: "q:o", 10: "Left", 11: "a__b",
-    12: "  pad  ", 13: "tab\tx", 14: "#$%", 15: "x" * 90, 16: "region_3", 17: "*NODE", 18: "]]>", 19: "-5", 20: "a_b", 21: "a  b", 22: "q<o",
-    -25: "region_4", 2**40: "region_5",
+    12: "  pad  ", 13: "tab\tx", 14: "#$%", 15: "x" * 90, 16: "region_3", 17: "*NODE", 18: "]]>", 19: "-5", 20: "a_b", 21: "a  b",
+    22: "q<o", -25: "region_4", 2**40: "region_5",
 }  # fmt: skip
 LABELS = [0, -1, -7, 2**31 - 1, 2**31, -(2**31), 2**63 - 1, -(2**63), 2**53 + 1, 5]
 HOLDERS = (".ply", ".obj", ".vtp", ".vtu", ".vtkhdf", ".msh", ".inp", ".bdf", ".xdmf", ".mesh")
