@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from img2tri.arrays import Floats
-from img2tri.views.formats.solvers.plain_text import MARK, comment_lines, distinct, fitted_numbers, label_table, unquoted
+from img2tri.views.formats.solvers.plain_text import MARK, comment_lines, distinct_names, fitted_numbers, label_table, unquoted
 from img2tri.views.objects.solver_cells import Cells
 
 # Card of each kind, and its order of the nodes where that is not the one of VTK: upright edges come before those of the top.
@@ -29,7 +29,7 @@ def bdf(made: Cells) -> dict[str, bytes]:
     dict
         The bytes of the file, under "".
     """
-    called = distinct([*made.names.values(), *made.sides], unquoted)
+    called = distinct_names([*made.names.values(), *made.sides], unquoted)
     lines = [f"$ {MARK}", *comment_lines(made.texts | label_table(made, called), "$ "), "CEND", "BEGIN BULK", *_grid_cards(made.points)]
     cells = made.cells[:, NASTRAN_ORDERS.get(made.kind, slice(None))] + 1
     for label, mine in made.members().items():

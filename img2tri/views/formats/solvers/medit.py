@@ -12,7 +12,7 @@ import numpy as np
 
 from img2tri.errors import ParameterError
 from img2tri.views.formats.number_rows import real_rows, whole_rows
-from img2tri.views.formats.solvers.plain_text import MARK, comment_lines, distinct, label_table
+from img2tri.views.formats.solvers.plain_text import MARK, comment_lines, distinct_names, label_table
 from img2tri.views.objects.solver_cells import Cells
 
 
@@ -36,7 +36,7 @@ def medit(made: Cells) -> dict[str, bytes]:
     sets = [name for name in made.sides if name not in split]
     numbers = {name: made.ids[label] for label, name in made.names.items()} | made.tags
     height = {} if made.solid or not made.points[0, 2] else {"z": repr(float(made.points[0, 2]))}
-    called = distinct(numbers, lambda name: " ".join(name.split()))
+    called = distinct_names(numbers, lambda name: " ".join(name.split()))
     lines = ["MeshVersionFormatted 2", f"# {MARK}", *comment_lines(made.texts | height | label_table(made, called), "# ")]
     lines += [f"# {number} {called[name]}".encode("ascii", "backslashreplace").decode() for name, number in numbers.items()]
     points = made.points if made.solid else made.points[:, :2]

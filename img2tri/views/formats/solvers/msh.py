@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from img2tri.arrays import Floats, Ints
 from img2tri.errors import ParameterError
 from img2tri.views.formats.number_rows import exact_doubles, real_rows, whole_rows
-from img2tri.views.formats.solvers.plain_text import MARK, comment_lines, distinct, label_table, unquoted
+from img2tri.views.formats.solvers.plain_text import MARK, comment_lines, distinct_names, label_table, unquoted
 from img2tri.views.objects.periodic_nodes import node_pairs
 from img2tri.views.objects.solver_cells import Cells
 
@@ -67,7 +67,7 @@ def msh(made: Cells, *, version: str = "4.1") -> dict[str, bytes]:
     if version not in VERSIONS:
         raise ParameterError(f"version: expected '4.1' or '2.2', found {version!r}")
     inside, members = 3 if made.solid else 2, made.members()
-    called = distinct([*made.names.values(), *made.sides], unquoted)
+    called = distinct_names([*made.names.values(), *made.sides], unquoted)
     names = [(inside - 1, made.tags[name], called[name]) for name in made.sides if version == "4.1" or name not in made.part_of]
     names += [(inside, made.ids[label], called[name]) for label, name in made.names.items()]
     entities = _entities(made, members)

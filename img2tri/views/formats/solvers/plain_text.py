@@ -111,12 +111,12 @@ def comment_lines(texts: Mapping[str, str], mark: str) -> list[str]:
     return lines
 
 
-def distinct(names: Iterable[str], fit: Callable[[str], str]) -> dict[str, str]:
+def distinct_names(names: Iterable[str], fit: Callable[[str], str]) -> dict[str, str]:
     """Return for each name what a format can hold of it, no two alike.
 
     Examples
     --------
-    >>> distinct(["a b", "a  b", "c"], lambda name: " ".join(name.split()))
+    >>> distinct_names(["a b", "a  b", "c"], lambda name: " ".join(name.split()))
     {'a b': 'a b', 'a  b': 'a b_2', 'c': 'c'}
     """
     found: dict[str, str] = {}

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from img2tri.arrays import Floats, Ints
 from img2tri.errors import FileError
-from img2tri.views.formats.solvers.plain_text import distinct
+from img2tri.views.formats.solvers.plain_text import distinct_names
 from img2tri.views.formats.vtp_vtu import VTK_TYPES, vtu_file
 from img2tri.views.objects.solver_cells import Cells
 
@@ -65,7 +65,7 @@ def grid_of(
 
     grid = pyvista.UnstructuredGrid({VTK_TYPES[kind]: cells}, points)
     grid.cell_data["region"] = as_regions(regions)
-    called = distinct([*names.values(), *facets], array_name)
+    called = distinct_names([*names.values(), *facets], array_name)
     for label, name in names.items():
         grid.field_data[called[name]] = np.array([label])
     for name, nodes in facets.items():
@@ -81,7 +81,7 @@ def vtu(made: Cells) -> dict[str, bytes]:
     dict
         The bytes of the file, under "".
     """
-    called = distinct([*made.names.values(), *made.sides], array_name)
+    called = distinct_names([*made.names.values(), *made.sides], array_name)
     fields = {called[name]: np.array([label]) for label, name in made.names.items()}
     fields |= {called[name]: made.facets(name) for name in made.sides}
     cell_data = {**made.cell_data, "region": as_regions(made.regions)}
