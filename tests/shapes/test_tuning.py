@@ -1,0 +1,283 @@
+"""What the constants of this room are worth: measures of outlines, each better if it is less, that a wrong constant makes worse.
+
+No mesh is made, so nothing here depends on how triangles are. Whoever makes something better may lower the values. That a constant
+matters is shown too: halved, doubled or gone, it makes one of the measures worse; a constant that does not is not worth having.
+"""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+from functools import cache
+
+import numpy as np
+import pytest
+import shapely
+import specimens
+from benchmarks.shapes import blob, gear
+
+import img2tri.shapes
+from img2tri.arrays import as_complex, as_rows
+from img2tri.raster.labels.segmentation import Segmentation
+from img2tri.recipes.conforming import Sizes, _spaced, trace_outlines
+from img2tri.recipes.preserved_areas import with_areas_preserved
+from img2tri.shapes.periodic.paired_outlines import find_periodic_pairs
+from img2tri.shapes.simplify.area_preservation import area_errors
+from img2tri.shapes.simplify.simplification import space_evenly
+from img2tri.shapes.simplify.tangential_relocation import relocate, slide_limits
+from img2tri.shapes.simplify.tolerance import deviations
+from img2tri.shapes.sizes.outline_sizes import by_curvature, by_thickness, limit_growth
+from img2tri.types import Frame
+
+RNG = np.random.default_rng(5)
+SHIFTS = RNG.uniform(-0.5, 0.5, (3, 2))
+Y, X = np.mgrid[:90, :90] + 0.5
+NOISE = {name: RNG.normal(0, 1, (90, 90)) for name in ("gray", "scanned")}
+LABELS = {
+    "blob": blob(128, seed=4, holes=2).astype(int),
+    "gear": gear(9, 110, 0.2).astype(int),
+    "grains": specimens.polycrystal(90, 14, 3),
+    "noise": RNG.integers(0, 2, (24, 27)),
+    **{f"gear {k}": gear(9 + k, 130, 0.13 * k).astype(int) for k in range(5)},
+    "specks": np.kron(RNG.integers(1, 4, (14, 14)), np.ones((4, 4), int)),
+}
+
+
+def traced(labels, gray=None, level=None):
+    return trace_outlines(Segmentation(labels, 0, gray=gray, level=level), Frame(labels.shape))
+
+
+def rms(off):
+    return float(np.sqrt(np.mean(np.concatenate([np.ravel(one) for one in off]) ** 2)))
+
+
+# ---- where outlines lie ----
+
+
+def discs(radius):
+    """Root mean square of the distance between the outlines of discs and circles."""
+    off = []
+    for shift in SHIFTS:
+        n = int(2 * radius) + 12
+        x, y = n / 2 + shift
+        points = traced(specimens.disc(n, radius, (n - y, x)))[0].points
+        off.append(np.hypot(*(points - (x, y)).T) - radius)
+    return rms(off)
+
+
+def halves(radius):
+    """The same for discs that are cut in two, at least 3 px from the cut, and how far from it nodes lie."""
+    off, nodes = [], []
+    for shift in SHIFTS:
+        n = int(2 * radius) + 12
+        x, y = n / 2 + shift
+        labels = specimens.disc(n, radius, (n - y, x))
+        labels = labels * (1 + (np.mgrid[:n, :n][1] + 0.5 > x + 0.3 * radius))
+        outlines, dual_edges = traced(labels)
+        from_cut = outlines.points[:, 0] - x - 0.3 * radius
+        round_part = np.abs(np.hypot(*(outlines.points - (x, y)).T) - radius) < 1.5
+        off.append((np.hypot(*(outlines.points - (x, y)).T) - radius)[round_part & (np.abs(from_cut) > 3)])
+        at = outlines.points[len(dual_edges.crossed) :]
+        nodes.append(np.hypot(*(at - (x, y)).T) - radius)
+    return rms(off), rms(nodes)
+
+
+def walls():
+    """How far the outlines between straight grains are from the lines that part them, and their nodes from where these meet."""
+    off = []
+    for seed in (1, 2, 3):
+        seeds = np.random.default_rng(seed).random((9, 2)) * 80
+        y, x = np.mgrid[:80, :80] + 0.5
+        labels = np.argmin([np.hypot(80 - y - r, x - c) for r, c in seeds], axis=0) + 1
+        outlines, _ = traced(labels)
+        places = outlines.points[(outlines.points > 4).all(axis=1) & (outlines.points < 76).all(axis=1)]
+        apart = np.sort(np.hypot(*(places[:, None] - seeds[None, :, ::-1]).transpose(2, 0, 1)), axis=1)
+        off.append((apart[:, 1] - apart[:, 0]) / 2)
+    return rms(off)
+
+
+def framed():
+    """How far half discs at the frame are from circles."""
+    off = []
+    for shift in SHIFTS:
+        labels = specimens.disc(60, 24.3, (60.0, 30 + shift[0]))[:60]
+        points = traced(labels)[0].points
+        round_part = points[points[:, 1] > 0.01]
+        off.append(np.hypot(round_part[:, 0] - 30 - shift[0], round_part[:, 1]) - 24.3)
+    return rms(off)
+
+
+def polygons():
+    """Corners of turned rectangles that are not found, or found where none is; and how far the others are off."""
+    missed, off = 0, []
+    for k, angle in enumerate(range(4, 90, 9)):
+        sides = (14 + 3 * k, 20 + 2 * k)
+        labels = specimens.rectangle(80, sides, angle)
+        outlines, dual_edges = traced(labels)
+        half = np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]]) * np.asarray(sides) / 2
+        true = as_complex(half) * np.exp(1j * np.radians(angle)) + 40 * (1 + 1j)
+        found = as_complex(outlines.points[dual_edges.is_corner])
+        if not len(found):
+            missed += 4
+            continue
+        apart = np.abs(true[:, None] - found[None])
+        hit = apart.min(axis=1) < 1.5
+        missed += int((~hit).sum()) + max(0, len(found) - int(hit.sum()))
+        off.append(apart.min(axis=1)[hit])
+    return float(missed), rms(off)
+
+
+def squares():
+    """Corners of squares along rows and columns, of 3 px, that are missed."""
+    labels = np.pad(np.kron([[1, 0, 1, 0, 1]], np.ones((3, 3), int)), 3)
+    round_shapes = sum(int(traced(specimens.disc(40, r))[1].is_corner.sum()) for r in (4.2, 6.3, 9.1, 13.7))
+    return float(12 - traced(labels)[1].is_corner.sum() + round_shapes)
+
+
+def teeth():
+    """Corners of a gear that are missed: 36."""
+    return float(abs(36 - int(traced(gear(9, 220, 0.2).astype(int))[1].is_corner.sum())))
+
+
+def gray():
+    """Discs in gray: noisy ones, and hard ones with a little noise."""
+    circle = 30.3 - np.hypot(X - 45.2, 90 - Y - 44.7)
+    soft = 255 * np.clip(circle + 0.5, 0, 1) + 20 * NOISE["gray"]
+    hard = 180 * (circle > 0) + 2 * NOISE["scanned"]
+    clean = 255 * np.clip(circle + 0.5, 0, 1)
+    result = []
+    for values, level in ((clean, 127.5), (soft, 127.5), (hard, 90.0)):
+        labels = largest(values > level)
+        points = traced(labels, gray=values, level=level)[0].points
+        result.append(rms([np.hypot(*(points - (45.2, 44.7)).T) - 30.3]))
+    return tuple(result)
+
+
+def largest(mask):
+    from scipy.ndimage import binary_closing, label
+
+    parts, _ = label(binary_closing(mask))
+    return (parts == np.bincount(parts.ravel())[1:].argmax() + 1).astype(int)
+
+
+# ---- how they are simplified ----
+
+
+@cache
+def dense(name):
+    return traced(LABELS[name])
+
+
+def coarse(name, length=7.0):
+    outlines, dual_edges = dense(name)
+    pairs = find_periodic_pairs(outlines, dual_edges, None)
+    return with_areas_preserved(_spaced(outlines, dual_edges, pairs, Sizes(length), 0.5, False, True), pairs, tolerance=0.5)
+
+
+def simplified(name):
+    """The number of chords; the mean logarithm of how much longer a chord is than its neighbour; 1 / the shortest; the worst area."""
+    s = coarse(name)
+    first, last = s.chords
+    length = np.abs(s.places[last] - s.places[first])
+    ratio = (length[1:] / length[:-1])[last[:-1] == first[1:]]
+    return float(len(first)), float(np.abs(np.log(ratio)).mean()), float(1 / length.min()), float(area_errors(s).max())
+
+
+def gears():
+    """The number of chords of five gears."""
+    return (float(sum(len(coarse(f"gear {k}", 6.0).chords[0]) for k in range(5))),)
+
+
+def ring():
+    """How far a disc is from its chords where very long ones are asked for."""
+    s = space_evenly(*traced(specimens.disc(30, 11.3)), spacing=100.0)
+    return (float(deviations(s, *s.chords).max()),)
+
+
+def slid():
+    """How far outlines are off whose vertices are asked to slide, and the mean of 1 / the limits that are set to that."""
+    off, limited = [], []
+    for name in ("blob", "gear", "grains"):
+        s = coarse(name)
+        limits = slide_limits(s, shortest=0.0)
+        points = as_complex(s.coarse().points)
+        asked = points + 0.8 * limits * np.exp(1j * np.arange(len(points)))
+        went = as_complex(relocate(s, as_rows(asked), tolerance=0.5, keep_area=True))
+        lines = shapely.linestrings(went[s.coarse().segments[0]].view(np.float64).reshape(-1, 2, 2))
+        off.append(shapely.distance(shapely.points(s.outlines.points), shapely.union_all(lines)).max())
+        limited.append(1 / limits.mean())
+    return float(max(off)), float(np.mean(limited))
+
+
+def sized():
+    """Relative errors of lengths by the thickness of a ring, by the curvature of a disc; the mean of lengths whose growth is limited."""
+    outlines, dual_edges = traced(specimens.disc(80, 35.1) - specimens.disc(80, 29.9))
+    z = as_complex(outlines.points)[outlines.chains.indices]
+    thin = np.minimum(limit_growth(by_thickness(z, dual_edges, 8.0, 2.0), z, outlines.chains, 0.17), 8.0) / 2.6
+    outlines, dual_edges = traced(specimens.disc(90, 33.3))
+    turn = by_curvature(as_complex(outlines.points)[outlines.chains.indices], outlines.chains, 50.0, 40.0) / (2 * np.pi * 33.3 / 40)
+    grains, _ = dense("grains")
+    z = as_complex(grains.points)[grains.chains.indices]
+    size = np.full(len(z), 40.0)
+    size[:3] = 1.0
+    return float(np.abs(thin - 1).mean()), float(np.abs(np.log(turn)).mean()), float(limit_growth(size, z, grains.chains, 0.17).mean())
+
+
+GROUPS = {
+    "disc 6": lambda: (discs(6.4),), "disc 21": lambda: (discs(21.3),), "disc 60": lambda: (discs(60.2),),
+    "halves": lambda: halves(25.4), "walls": lambda: (walls(),), "framed": lambda: (framed(),),
+    "polygons": polygons, "squares": lambda: (squares(),), "teeth": lambda: (teeth(),), "gray": gray,
+    **{name: (lambda name=name: simplified(name)) for name in ("blob", "gear", "grains", "noise", "specks")},
+    "gears": gears, "ring": ring, "slid": slid, "sized": sized,
+}  # fmt: skip
+
+REACHED = {
+    "disc 6": (0.0765,), "disc 21": (0.0367,), "disc 60": (0.0272,),
+    "halves": (0.0475, 0.0505), "walls": (0.073,), "framed": (0.0438,),
+    "polygons": (0.0, 0.23), "squares": (0.0,), "teeth": (18.0,), "gray": (0.0059, 0.0685, 0.239),
+    "blob": (85, 0.03), "gear": (118, 0.12), "grains": (172, 0.115), "noise": (700, 0.25, 3.0), "specks": (700, 0.25),
+    "gears": (745,), "ring": (1.1,), "slid": (0.5, 2.3), "sized": (0.03, 0.031, 31.5),
+}  # fmt: skip
+
+MATTERS = [
+    ("BOUND", 0.5, "disc 21", 0), ("NARROW", 0.5, "disc 6", 0), ("WIDTH", 0.5, "disc 21", 0), ("WIDE", 0.5, "disc 60", 0),
+    ("RING_SCALES", 2, "disc 21", 0), ("BENDS", 0.5, "disc 60", 0), ("MOST_BEND", 0.5, "disc 60", 0), ("BEND", 0.5, "gray", 0),
+    ("ROUNDEST", 0.5, "disc 6", 0), ("LENGTHS", 0.5, "polygons", 0), ("OUT_OF_BLOCK", 0.5, "polygons", 0),
+    ("SHORTEST_SIDE", 2, "polygons", 0), ("SLOPPY", 0, "polygons", 0), ("SKIPPED", 2, "polygons", 1), ("SAME_CORNER", 2, "squares", 0),
+    ("SHORTEST_ALIGNED", 2, "squares", 0), ("HARD", 0.5, "gray", 0), ("SURE", 0.5, "gray", 1), ("WINDOW", 2, "gray", 1),
+    ("MISFIT", 0.5, "blob", 1), ("MOST_OFFSET", 2, "gear", 0), ("RING", 0.5, "ring", 0), ("ROOM_TO_EVEN", 0.5, "gear", 0),
+    ("SHARP_TURN", 0.5, "grains", 0), ("GAP", 2, "specks", 0), ("LEANS", 0, "gears", 0), ("ENOUGH", 1.053, "gears", 0),
+    ("SLIDE", 0.5, "slid", 1), ("STRAIGHT", 0.5, "slid", 1), ("EMPTY", 2, "sized", 0), ("OPPOSITE", 2, "sized", 0),
+    ("EVERY", 2, "sized", 0), ("BESIDE", 0.5, "sized", 1), ("PASSES", 0.5, "sized", 2),
+]  # fmt: skip
+
+MODULES = [importlib.import_module(found.name) for found in pkgutil.walk_packages(img2tri.shapes.__path__, "img2tri.shapes.")]
+
+
+@cache
+def measured(group):
+    dense.cache_clear()
+    return GROUPS[group]()
+
+
+@pytest.mark.parametrize("group", GROUPS)
+def test_what_was_reached_is_kept(group):
+    found = measured(group)
+    assert all(value <= most for value, most in zip(found, REACHED[group], strict=False)), found
+
+
+def changed(value, factor):
+    return tuple(changed(one, factor) for one in value) if isinstance(value, tuple) else type(value)(value * factor)
+
+
+@pytest.mark.parametrize(("constant", "factor", "group", "measure"), MATTERS, ids=[name for name, *_ in MATTERS])
+def test_a_constant_matters(constant, factor, group, measure, monkeypatch):
+    before = measured(group)[measure]
+    homes = [module for module in MODULES if constant in vars(module)]
+    for module in homes:
+        monkeypatch.setattr(module, constant, changed(getattr(module, constant), factor))
+    dense.cache_clear()
+    try:
+        assert GROUPS[group]()[measure] > 1.035 * before
+    finally:
+        dense.cache_clear()
