@@ -16,7 +16,7 @@ from img2tri.arrays import Bools, Floats, Ints, Points, as_rows
 from img2tri.tiles.seams.piece_seams import SeamError, Sides
 from img2tri.triangles.generate.constrained_delaunay import SUPER, PslgError, insert
 from img2tri.triangles.generate.pslg import Pslg
-from img2tri.triangles.generate.quality_smoothing import raise_worst_angles, smooth
+from img2tri.triangles.generate.quality_smoothing import smooth, smooth_and_raise
 from img2tri.triangles.generate.ruppert_refinement import refine_locally
 from img2tri.triangles.generate.valence_repair import repair_valences
 from img2tri.triangles.smallest_tangents import narrower
@@ -184,7 +184,7 @@ def improved(
     free = ~np.append(fixed, np.zeros(n - len(fixed), bool))[inside]
     free[sides.low[still]] = free[sides.high[still]] = False
     for _ in range(2):
-        places = smooth(raise_worst_angles(smooth(places, local, free), local, free), local, free)
+        places = smooth_and_raise(places, local, free)
     z = z.copy()
     z[inside] = places
     return refined(z, triangles, codes, zone, closed, min_angle)

@@ -34,7 +34,7 @@ from scipy.sparse import csc_array
 
 from img2tri.arrays import Bools, Floats, Ints, Points, blocks
 from img2tri.errors import bounded
-from img2tri.triangles.smallest_tangents import smallest_angles, smallest_tangents
+from img2tri.triangles.smallest_tangents import smallest_tangents
 
 TURN = np.exp(2j * np.pi / 3)
 DEFECT = np.array([1, TURN, TURN**2])
@@ -97,43 +97,73 @@ def smooth(vertices: Points, triangles: Ints, free: Bools, schedule: Schedule = 
 
     The worst angle does not fall, nor does any one fall below 30 degrees.
     """
-    moved = vertices.copy()
-    n, m = len(vertices), len(triangles)
-    corners = _columns(triangles)
-    # One row per vertex, one column per triangle, with an entry for each of its corners.
-    entries, ends = triangles.ravel().astype(np.int32), np.arange(0, 3 * m + 1, 3, dtype=np.int32)
-    sum_of_moves = csc_array((np.tile(-DEFECT.conj(), m), entries, ends), shape=(n, m))
-    sum_of_weights = csc_array((np.ones(3 * m), entries, ends), shape=(n, m))
-    where = np.flatnonzero(free & (np.bincount(entries, minlength=n) > 0))
-    weights, weighted = np.empty(m), np.empty(m, np.complex128)
-    for doublings, damping, steps in schedule:
-        for _ in range(steps):
-            for block in blocks(m):
-                defect, quality = _defects_and_qualities(moved, corners[:, block])
-                weight = 1 / np.maximum(quality, FLATTEST)
-                for _ in range(doublings):
-                    weight *= weight
-                weights[block] = weight
-                np.multiply(weight, defect, out=weighted[block])
-            moves, total = np.asarray(sum_of_moves @ weighted), np.asarray(sum_of_weights @ weights)
-            moved[where] += damping * moves[where] / total[where]
-            if lines is not None:
-                step = damping * moves[lines.at] / total[lines.at]
-                way = ((moved[lines.at] + step - lines.start) * lines.along.conj()).real
-                moved[lines.at] = lines.start + np.clip(way, -lines.limits, lines.limits) * lines.along
-    return _shortened(vertices, moved, triangles)
+    return _Smoother(triangles, free).smoothed(vertices, None, schedule, lines)[0]
 
 
 def raise_worst_angles(vertices: Points, triangles: Ints, free: Bools, target: float = TARGET) -> Points:
     """Smooth with large powers, but only around the worst angles, and as long as these are less than `target` degrees."""
+    return _raised(vertices, smallest_tangents(vertices, triangles), triangles, free, target)[0]
+
+
+def smooth_and_raise(vertices: Points, triangles: Ints, free: Bools) -> Points:
+    """Smooth, raise the worst angle, and smooth once more.
+
+    Only the worst angle is worth large powers: what else they spoil is mended by the last smoothing, in which that angle stays.
+    """
+    smoother = _Smoother(triangles, free)
+    return smoother.smoothed(*_raised(*smoother.smoothed(vertices), triangles, free))[0]
+
+
+class _Smoother:
+    """What smoothing has to know of triangles and of the vertices that may move."""
+
+    def __init__(self, triangles: Ints, free: Bools) -> None:
+        n, m = len(free), len(triangles)
+        self._triangles, self._corners = triangles, _columns(triangles)
+        # One row per vertex, one column per triangle, with an entry for each of its corners.
+        entries, ends = triangles.ravel().astype(np.int32), np.arange(0, 3 * m + 1, 3, dtype=np.int32)
+        self._sum_of_moves = csc_array((np.tile(-DEFECT.conj(), m), entries, ends), shape=(n, m))
+        self._sum_of_weights = csc_array((np.ones(3 * m), entries, ends), shape=(n, m))
+        used = np.zeros(n, bool)
+        used[entries] = True
+        self._where = np.flatnonzero(free & used)
+
+    def smoothed(
+        self, vertices: Points, tangents: Floats | None = None, schedule: Schedule = SMOOTH, lines: SlideLines | None = None
+    ) -> tuple[Points, Floats]:
+        """Return the vertices moved by damped steps, and their smallest tangents (m,); those of before may be known."""
+        m, where = len(self._triangles), self._where
+        moved, weights, weighted = vertices.copy(), np.empty(m), np.empty(m, np.complex128)
+        for doublings, damping, steps in schedule:
+            for _ in range(steps):
+                for block in blocks(m):
+                    defect, quality = _defects_and_qualities(moved, self._corners[:, block])
+                    weight = 1 / np.maximum(quality, FLATTEST)
+                    for _ in range(doublings):
+                        weight *= weight
+                    weights[block] = weight
+                    np.multiply(weight, defect, out=weighted[block])
+                moves, total = np.asarray(self._sum_of_moves @ weighted), np.asarray(self._sum_of_weights @ weights)
+                moved[where] += damping * moves[where] / total[where]
+                if lines is not None:
+                    step = damping * moves[lines.at] / total[lines.at]
+                    way = ((moved[lines.at] + step - lines.start) * lines.along.conj()).real
+                    moved[lines.at] = lines.start + np.clip(way, -lines.limits, lines.limits) * lines.along
+        return _shortened(vertices, moved, self._triangles, smallest_tangents(vertices, self._triangles) if tangents is None else tangents)
+
+
+def _raised(vertices: Points, tangents: Floats, triangles: Ints, free: Bools, target: float = TARGET) -> tuple[Points, Floats]:
+    """Raise the worst angles, see `raise_worst_angles`; take and return the smallest tangents (m,) too."""
     for _ in range(WORST_PASSES):
-        angles = smallest_angles(vertices, triangles)
+        angles = np.degrees(np.arctan(tangents))
         worst = angles < min(target, angles.min(initial=target) + NEAR_WORST)
         if not worst.any():
             break
         patch, inner = patch_around(worst, triangles, len(vertices), WORST_RINGS)
-        vertices = smooth(vertices, triangles[patch], free & inner, WORST_FIRST)
-    return vertices
+        vertices, changed = _Smoother(triangles[patch], free & inner).smoothed(vertices, tangents[patch], WORST_FIRST)
+        tangents = tangents.copy()
+        tangents[patch] = changed
+    return vertices, tangents
 
 
 def patch_around(chosen: Bools, triangles: Ints, n: int, rings: int) -> tuple[Bools, Bools]:
@@ -155,12 +185,14 @@ def touching(triangles: Ints, marked: Bools) -> Bools:
     return either
 
 
-def _shortened(before: Points, after: Points, triangles: Ints) -> Points:
-    """Shorten the moves of vertices of triangles that became bad: whose angle fell below 30 degrees or below the worst before."""
-    tangents = smallest_tangents(before, triangles)
+def _shortened(before: Points, after: Points, triangles: Ints, tangents: Floats) -> tuple[Points, Floats]:
+    """Shorten the moves of vertices of triangles that became bad: whose angle fell below 30 degrees or below the worst before.
+
+    The smallest tangents (m,) are those before; those after are returned with the vertices.
+    """
     least = np.minimum(tangents, max(math.tan(math.radians(SAFE)), tangents.min(initial=np.inf))) - 1e-12
-    moved, part = after.copy(), np.ones(len(before))
-    worse = np.flatnonzero(smallest_tangents(after, triangles) < least)
+    moved, part, found = after.copy(), np.ones(len(before)), smallest_tangents(after, triangles)
+    worse = np.flatnonzero(found < least)
     # Each round shortens a move, and each move is shortened four times at most.
     for _ in bounded("smoothing", 4 * len(before) + 2):
         if not len(worse):
@@ -173,5 +205,6 @@ def _shortened(before: Points, after: Points, triangles: Ints) -> Points:
         changed = np.zeros(len(before), bool)
         changed[back] = True
         doubtful = np.flatnonzero(touching(triangles, changed))
-        worse = doubtful[smallest_tangents(moved, triangles[doubtful]) < least[doubtful]]
-    return moved
+        found[doubtful] = smallest_tangents(moved, triangles[doubtful])
+        worse = doubtful[found[doubtful] < least[doubtful]]
+    return moved, found

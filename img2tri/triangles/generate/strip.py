@@ -17,7 +17,7 @@ from img2tri.triangles.generate.graded_lattice import finer, reach
 from img2tri.triangles.generate.hexagonal_lattice import Codes, Core, Lattice
 from img2tri.triangles.generate.interior_sizes import SizeFunction, nearest_of
 from img2tri.triangles.generate.pslg import Pslg
-from img2tri.triangles.generate.quality_smoothing import SAFE, raise_worst_angles, smooth
+from img2tri.triangles.generate.quality_smoothing import SAFE, smooth, smooth_and_raise
 from img2tri.triangles.generate.valence_repair import repair_valences
 from img2tri.triangles.smallest_tangents import narrower
 
@@ -146,9 +146,7 @@ def finish_strip(strip: Strip, relaxed: RegionMesh, first: Points) -> RegionMesh
     if not stays.all() or narrower(vertices, triangles, SAFE).any():
         mesh = _triangulated(strip, vertices[:fixed], np.concatenate([vertices[fixed:][stays[fixed:]], added]))
         vertices, triangles, codes, free = mesh.vertices, mesh.triangles, mesh.codes, _free(strip, mesh)
-    # Only the worst angle is worth large powers: what else they spoil is smoothed once more, and that angle stays.
-    vertices = raise_worst_angles(smooth(vertices, triangles, free), triangles, free)
-    return RegionMesh(smooth(vertices, triangles, free), triangles, codes)
+    return RegionMesh(smooth_and_raise(vertices, triangles, free), triangles, codes)
 
 
 def _triangulated(strip: Strip, fixed: Points, free: Points) -> RegionMesh:
