@@ -13,9 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from img2tri.arrays import Bools, Ints
+from img2tri.arrays import Bools, Ints, label_changes
 from img2tri.errors import ImageError
-from img2tri.raster.labels.label_numbers import distinct
 
 THIN_SHARE = 0.01  # of the pixels: less than that are no lines that part regions
 MOST_INSIDE = 0.1  # of the pixels of a label that are off its edges: more are no lines
@@ -104,11 +103,17 @@ def thin_separators(labels: NDArray[Any]) -> list[int]:
     [0]
     """
     labels = labels[:LOOKED_AT, :LOOKED_AT]
-    every = distinct(labels)
-    number = np.searchsorted(every, labels)
-    middle = number[1:-1, 1:-1]
-    inside = (middle == number[:-2, 1:-1]) & (middle == number[2:, 1:-1]) & (middle == number[1:-1, :-2]) & (middle == number[1:-1, 2:])
-    count, inner = np.bincount(number.reshape(-1), minlength=len(every)), np.bincount(middle[inside], minlength=len(every))
+    # Labels come in runs, of which there are few; and so are the pixels beside another label, or at the edge.
+    flat, w = np.ascontiguousarray(labels).reshape(-1), labels.shape[1]
+    right, below = label_changes(flat, 1), label_changes(flat, w)
+    first = np.append(0, right + 1)
+    every, number = np.unique(flat[first], return_inverse=True)
+    count = np.bincount(number, np.diff(first, append=len(flat)))
+    edge = np.ones(labels.shape, bool)
+    edge[1:-1, 1:-1] = False
+    for at, step in ((right, 1), (below, w)):
+        edge.reshape(-1)[at] = edge.reshape(-1)[at + step] = True
+    inner = count - np.bincount(np.searchsorted(every, flat[np.flatnonzero(edge)]), minlength=len(every))
     lines = []
     for label in every[(count > THIN_SHARE * labels.size) & (inner < MOST_INSIDE * count)].tolist():
         here = labels == label

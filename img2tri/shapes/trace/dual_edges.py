@@ -96,16 +96,20 @@ class DualEdges:
         turn = np.sign(cross(self.corner_after[one] - z[one], self.corner_after[other] - z[other]))
         # What each crossing gives back: half of an eighth for each outline that cuts a corner next to it.
         given = np.bincount(np.concatenate([one, other]), np.tile(turn / 16, 2), len(z)) * self.pixel.real * self.pixel.imag
-        shift = np.zeros(len(z))
-        for _ in range(FAIR_ROUNDS if given.any() else 0):
+        shift, (begin, end) = np.zeros(len(z)), self.chains.ring_ends
+        entry = np.zeros(len(z), np.int64)
+        entry[at] = np.arange(len(at))
+        entry[at[end]] = begin
+        moved = np.flatnonzero(given)
+        behind, ahead = at[entry[moved] - 1], at[entry[moved] + 1]
+        goes_round = np.isin(entry[moved], begin)
+        behind[goes_round] = at[end[np.searchsorted(begin, entry[moved[goes_round]])] - 1]
+        for _ in range(FAIR_ROUNDS if len(moved) else 0):
             # A shift t sweeps t * vector x (ahead - behind) / 2, with the neighbours half-way on theirs.
-            p = z + shift / 2 * self.vector
-            ahead, behind = np.roll(p[at], -1), np.roll(p[at], 1)
-            begin, end = self.chains.ring_ends
-            behind[begin], ahead[end] = p[at[end - 1]], p[at[begin + 1]]
-            width = np.zeros(len(z))
-            width[at] = cross(self.vector[at], (ahead - behind) / 2)
-            shift = np.divide(given, width, out=np.zeros(len(z)), where=np.abs(width) > LEAST_WIDTH).clip(-MOST_SHIFT, MOST_SHIFT)
+            there, back = (z[i] + shift[i] / 2 * self.vector[i] for i in (ahead, behind))
+            width = cross(self.vector[moved], (there - back) / 2)
+            wanted = np.divide(given[moved], width, out=np.zeros(len(moved)), where=np.abs(width) > LEAST_WIDTH)
+            shift[moved] = wanted.clip(-MOST_SHIFT, MOST_SHIFT)
         return np.asarray(z + shift * self.vector)
 
     @property
