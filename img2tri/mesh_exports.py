@@ -82,9 +82,10 @@ class MeshExports:
 
             about = {"names": self.names, "colours": self.colours, "base": self._base(base), **self._data()}
             return to_scene(self.vertices, self.triangles, self.regions, height=height, **about)
+        from img2tri.views.objects.flat_or_extruded import surface
         from img2tri.views.objects.to_trimesh import to_trimesh
 
-        return to_trimesh(self.vertices, self.triangles, self.regions, height=height, base=self._base(base), **self._data())
+        return to_trimesh(surface(self.vertices, self.triangles, self.regions, height=height, base=self._base(base), **self._data()))
 
     def to_pyvista(
         self,
@@ -113,9 +114,10 @@ class MeshExports:
             return remember(to_grid(self._cells(height, layers, order, cells)), self)
         if cells is not None:
             raise ParameterError(f"cells: expected to be left out without solid=True, found {cells!r}")
+        from img2tri.views.objects.flat_or_extruded import surface
         from img2tri.views.objects.to_pyvista import to_pyvista
 
-        made = to_pyvista(self.vertices, self.triangles, self.regions, height=height, base=self._base(base), **self._data())
+        made = to_pyvista(surface(self.vertices, self.triangles, self.regions, height=height, base=self._base(base), **self._data()))
         return remember(made, self)
 
     def sets(self) -> Sets:

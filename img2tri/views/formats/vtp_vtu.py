@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from img2tri.arrays import Floats, Ints
 from img2tri.errors import FileError
 from img2tri.views.objects.flat_or_extruded import Surface
-from img2tri.views.objects.to_pyvista import poly_data
+from img2tri.views.objects.to_pyvista import to_pyvista
 
 VTK_TYPES = {"triangle": 5, "triangle6": 22, "wedge": 13, "wedge15": 26, "tetra": 10, "tetra10": 24}
 _KINDS = {"i1": "Int8", "i2": "Int16", "i4": "Int32", "i8": "Int64", "u1": "UInt8", "u2": "UInt16", "u4": "UInt32", "u8": "UInt64"}
@@ -35,7 +35,7 @@ def vtp(made: Surface) -> bytes:
     from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
     writer: Any = vtkXMLPolyDataWriter()
-    writer.SetInputData(poly_data(made))
+    writer.SetInputData(to_pyvista(made))
     writer.SetWriteToOutputString(True)
     writer.SetDataModeToBinary()
     if not writer.Write():

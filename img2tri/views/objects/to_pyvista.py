@@ -1,38 +1,22 @@
-"""For pyvista users: a plane mesh -> `pyvista.PolyData`, flat or closed.
+"""For pyvista users: a plane mesh, flat or with a thickness -> `pyvista.PolyData`.
 
 Nothing here draws: VTK without its GL libraries ends the process.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from numpy.typing import ArrayLike
-
-from img2tri.views.objects.base_plate import Base
-from img2tri.views.objects.flat_or_extruded import Surface, surface
+from img2tri.views.objects.flat_or_extruded import Surface
 
 if TYPE_CHECKING:
     import pyvista
 
 
-def to_pyvista(
-    vertices: ArrayLike,
-    triangles: ArrayLike,
-    regions: ArrayLike | None = None,
-    *,
-    z: float = 0.0,
-    height: float | Mapping[int, float] | None = None,
-    cell_data: Mapping[str, ArrayLike] | None = None,
-    point_data: Mapping[str, ArrayLike] | None = None,
-    field_data: Mapping[str, str] | None = None,
-    base: Base | None = None,
-) -> pyvista.PolyData:
-    """Make a `pyvista.PolyData` of a plane mesh.
+def to_pyvista(made: Surface) -> pyvista.PolyData:
+    """Make a `pyvista.PolyData` of the triangles in space.
 
-    Parameters and errors are those of `img2tri.views.objects.flat_or_extruded.surface`. With `height`, the object is the closed surface
-    of the solid: without open edges, with volume = area x height.
+    Of a solid it is the closed surface: without open edges, with volume = area x height.
 
     Returns
     -------
@@ -41,19 +25,11 @@ def to_pyvista(
 
     Examples
     --------
-    >>> flat = to_pyvista([[0, 0], [2, 0], [0, 2]], [[0, 1, 2]], [7])
+    >>> from img2tri.views.objects.flat_or_extruded import surface
+    >>> flat = to_pyvista(surface([[0, 0], [2, 0], [0, 2]], [[0, 1, 2]], [7]))
     >>> flat.n_cells, flat.area, flat["region"].tolist()
     (1, 2.0, [7])
     """
-    return poly_data(
-        surface(
-            vertices, triangles, regions, z=z, height=height, cell_data=cell_data, point_data=point_data, field_data=field_data, base=base
-        )
-    )
-
-
-def poly_data(made: Surface) -> pyvista.PolyData:
-    """Make a PolyData of a surface."""
     import pyvista
 
     faces: Any = made.faces

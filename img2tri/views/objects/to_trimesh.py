@@ -1,39 +1,24 @@
-"""For trimesh users: a plane mesh -> a `trimesh.Trimesh`, flat or closed.
+"""For trimesh users: a plane mesh, flat or with a thickness -> a `trimesh.Trimesh`.
 
 trimesh accepts plane vertices, but its exporters do not; so vertices always have three coordinates.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from img2tri.views.objects.base_plate import Base
-from img2tri.views.objects.flat_or_extruded import surface
+from img2tri.views.objects.flat_or_extruded import Surface
 
 if TYPE_CHECKING:
     import trimesh
 
 
-def to_trimesh(
-    vertices: ArrayLike,
-    triangles: ArrayLike,
-    regions: ArrayLike | None = None,
-    *,
-    z: float = 0.0,
-    height: float | Mapping[int, float] | None = None,
-    cell_data: Mapping[str, ArrayLike] | None = None,
-    point_data: Mapping[str, ArrayLike] | None = None,
-    field_data: Mapping[str, str] | None = None,
-    base: Base | None = None,
-) -> trimesh.Trimesh:
-    """Make a `trimesh.Trimesh` of a plane mesh; nothing is merged, dropped or reordered.
+def to_trimesh(made: Surface) -> trimesh.Trimesh:
+    """Make a `trimesh.Trimesh` of the triangles in space; nothing is merged, dropped or reordered.
 
-    Parameters and errors are those of `img2tri.views.objects.flat_or_extruded.surface`. With `height`, the object is the closed surface
-    of the solid: watertight, with volume = area x height.
+    Of a solid it is the closed surface: watertight, with volume = area x height.
 
     Returns
     -------
@@ -43,15 +28,13 @@ def to_trimesh(
 
     Examples
     --------
-    >>> solid = to_trimesh([[0, 0], [2, 0], [0, 2]], [[0, 1, 2]], height=3, field_data={"units": "mm"})
+    >>> from img2tri.views.objects.flat_or_extruded import surface
+    >>> solid = to_trimesh(surface([[0, 0], [2, 0], [0, 2]], [[0, 1, 2]], height=3, field_data={"units": "mm"}))
     >>> solid.is_watertight, float(round(solid.volume, 9)), solid.units
     (True, 6.0, 'mm')
     """
     import trimesh
 
-    made = surface(
-        vertices, triangles, regions, z=z, height=height, cell_data=cell_data, point_data=point_data, field_data=field_data, base=base
-    )
     return trimesh.Trimesh(
         made.points,
         made.faces,

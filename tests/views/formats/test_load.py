@@ -15,6 +15,7 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWrit
 from img2tri.errors import FileError, Img2triError, MeshError
 from img2tri.views.formats.save_load import SURFACE_FORMATS, load, save
 from img2tri.views.formats.solvers.vtu_vtkhdf import to_grid
+from img2tri.views.objects.flat_or_extruded import surface
 from img2tri.views.objects.solver_cells import flat_cells
 from img2tri.views.objects.to_pyvista import to_pyvista
 
@@ -63,7 +64,7 @@ def test_what_trimesh_writes_is_loaded(tmp_path, kind):
 @pytest.mark.parametrize("kind", ["ply", "stl", "vtp"])
 def test_what_pyvista_writes_is_loaded(tmp_path, kind):
     vertices, triangles = ring()
-    to_pyvista(vertices, triangles).save(tmp_path / f"a.{kind}")
+    to_pyvista(surface(vertices, triangles)).save(tmp_path / f"a.{kind}")
     v, t, r = load(tmp_path / f"a.{kind}")
     assert np.array_equal(corners_with_regions(v, t, r), corners_with_regions(vertices, triangles, np.ones(24)))
 
@@ -89,7 +90,7 @@ def test_every_way_vtk_writes_xml_is_read(tmp_path, grid, compressed, wide, way)
     vertices, triangles = cells(np.ones((60, 80), bool))
     regions = np.arange(len(triangles)) % 5
     writer = vtkXMLUnstructuredGridWriter() if grid else vtkXMLPolyDataWriter()
-    writer.SetInputData(to_grid(flat_cells(vertices, triangles, regions)) if grid else to_pyvista(vertices, triangles, regions))
+    writer.SetInputData(to_grid(flat_cells(vertices, triangles, regions)) if grid else to_pyvista(surface(vertices, triangles, regions)))
     writer.SetFileName(str(tmp_path / ("a.vtu" if grid else "a.vtp")))
     {"ascii": writer.SetDataModeToAscii, "binary": writer.SetDataModeToBinary}.get(way, writer.SetDataModeToAppended)()
     writer.SetEncodeAppendedData(way != "raw")
@@ -105,7 +106,7 @@ def test_every_way_vtk_writes_xml_is_read(tmp_path, grid, compressed, wide, way)
 
 def test_lines_and_vertices_of_polydata_are_passed_over(tmp_path):
     vertices, triangles, regions = strip()
-    made = to_pyvista(vertices, triangles)
+    made = to_pyvista(surface(vertices, triangles))
     made = pv.PolyData(made.points, faces=made.faces, lines=[2, 0, 1, 2, 1, 2], verts=[1, 4])
     made.cell_data["region"] = np.concatenate([[91, 92, 93], regions]).astype(np.int32)
     made.save(tmp_path / "a.vtp")
@@ -174,7 +175,7 @@ def test_a_file_without_triangles_is_refused(tmp_path):
 
 
 def test_regions_have_to_be_whole_numbers(tmp_path):
-    made = to_pyvista(*ring())
+    made = to_pyvista(surface(*ring()))
     made.cell_data["region"] = np.linspace(0, 1, 24)
     made.save(tmp_path / "a.vtp")
     with pytest.raises(MeshError, match="region: expected whole numbers, found others"):

@@ -17,7 +17,7 @@ from img2tri.views.objects.to_trimesh import to_trimesh
 def test_trimesh_flat():
     vertices, triangles, regions = strip()
     q = np.linspace(0.5, 1, len(triangles))
-    made = to_trimesh(vertices, triangles, regions, z=2.0, cell_data={"q": q}, field_data={"units": "mm", "recipe": "x"})
+    made = to_trimesh(surface(vertices, triangles, regions, z=2.0, cell_data={"q": q}, field_data={"units": "mm", "recipe": "x"}))
     assert np.array_equal(made.vertices, np.column_stack([vertices, np.full(len(vertices), 2.0)]))
     assert np.array_equal(made.faces, triangles)
     assert made.face_attributes["region"].dtype == np.int32
@@ -31,7 +31,7 @@ def test_trimesh_flat():
 
 def test_trimesh_solid():
     vertices, triangles = ring()
-    made = to_trimesh(vertices, triangles, height=2)
+    made = to_trimesh(surface(vertices, triangles, height=2))
     assert made.is_watertight
     assert made.is_winding_consistent
     assert made.is_volume
@@ -42,7 +42,7 @@ def test_trimesh_solid():
 
 def test_trimesh_exports_of_the_object_work_too():
     vertices, triangles, regions = strip()
-    made = to_trimesh(vertices, triangles, regions)
+    made = to_trimesh(surface(vertices, triangles, regions))
     for kind in ("stl", "ply", "obj"):
         assert made.export(file_type=kind)
 
@@ -50,7 +50,7 @@ def test_trimesh_exports_of_the_object_work_too():
 def test_pyvista_flat():
     vertices, triangles, regions = strip()
     q = np.linspace(0.5, 1, len(triangles))
-    made = to_pyvista(vertices, triangles, regions, z=2.0, cell_data={"q": q}, field_data={"units": "µm"})
+    made = to_pyvista(surface(vertices, triangles, regions, z=2.0, cell_data={"q": q}, field_data={"units": "µm"}))
     assert made.points.dtype == np.float64
     assert np.array_equal(made.points[:, :2], vertices)
     assert np.all(made.points[:, 2] == 2)
@@ -64,7 +64,7 @@ def test_pyvista_flat():
 
 
 def test_pyvista_solid():
-    made = to_pyvista(*ring(), height=2)
+    made = to_pyvista(surface(*ring(), height=2))
     assert made.is_all_triangles
     assert made.n_open_edges == 0
     assert made.is_manifold
@@ -83,7 +83,7 @@ def test_pyvista_grid():
 def test_faces_of_a_solid_keep_region_and_values():
     vertices, triangles, regions = strip()
     q = np.linspace(0.5, 1, len(triangles))
-    made = to_pyvista(vertices, triangles, regions, height=1.5, cell_data={"q": q})
+    made = to_pyvista(surface(vertices, triangles, regions, height=1.5, cell_data={"q": q}))
     # Each face lies at the triangle whose value it has.
     middles = made.cell_centers().points[:, :2]
     for middle, value, region in zip(middles, made.cell_data["q"], made.cell_data["region"], strict=True):
