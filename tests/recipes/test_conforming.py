@@ -6,6 +6,7 @@ import numpy as np
 import oracles
 import pytest
 import specimens
+from benchmarks.shapes import gear
 
 from img2tri import mesh_image
 from img2tri.raster.labels.segmentation import Segmentation
@@ -70,3 +71,25 @@ def test_where_no_outlines_can_be_filled_its_error_is_what_one_gets(monkeypatch)
     with pytest.raises(MeshError, match="expected another one"):
         mesh_image(np.ones((1, 1), bool), edge_length=8)
     assert 1 < len(tried) <= conforming.ATTEMPTS
+
+
+def rim(radius, **options):
+    """How many edges a disc has along its outline."""
+    disc = np.hypot(*np.mgrid[-radius - 3 : radius + 3, -radius - 3 : radius + 3] + 0.5) < radius
+    return len(oracles.boundary(mesh_image(disc, **options).triangles))
+
+
+@pytest.mark.parametrize(("radius", "edge_length"), [(18, 8), (25, 12), (12, 6)])
+def test_edges_turn_by_no_more_than_a_twentieth_of_a_full_turn(radius, edge_length):
+    assert 20 <= rim(radius, edge_length=edge_length) <= 24
+
+
+def test_for_that_edges_get_no_shorter_than_a_third_of_what_is_wanted():
+    assert rim(18, edge_length=8, segments_per_turn=3) < 16
+    assert rim(8, edge_length=9) < 18 < rim(8, edge_length=9, segments_per_turn=20)
+
+
+def test_corners_are_not_taken_for_curves():
+    mask = gear(20, 380, 0.3)
+    count, least = (len(mesh_image(mask, edge_length=8, **o).triangles) for o in ({}, {"segments_per_turn": 3}))
+    assert count < 1.05 * least

@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from img2tri.arrays import ChainIndex, Floats, Ints, Points, as_rows, runs
+from img2tri.shapes.place.padded_chains import PaddedChains
 from img2tri.shapes.simplify.simplification import Simplification
 from img2tri.shapes.trace.dual_edges import DualEdges
 
@@ -91,15 +92,55 @@ def _thickness(z: Points, at: Ints, inwards: Points, greatest: float) -> Floats:
     return np.where(facing, 2 * radius, greatest)
 
 
-def by_curvature(z: Points, chains: ChainIndex, longest: float, segments_per_turn: float) -> Floats:
-    """Lengths (k,) that make so many segments of a full turn."""
-    i, first, last = np.arange(len(z)), chains.first[chains.chain], chains.last[chains.chain]
-    behind, ahead = np.maximum(i - BESIDE, first), np.minimum(i + BESIDE, last)
-    one, other = z - z[behind], z[ahead] - z
-    both = (np.abs(one) > 0) & (np.abs(other) > 0)
-    turn = np.where(both, np.abs(np.angle(other * one.conj())), 0)
-    way = (np.abs(one) + np.abs(other)) / 2
-    return np.asarray(np.minimum(longest, 2 * np.pi / segments_per_turn * way / np.maximum(turn, 1e-9)))
+def by_curvature(z: Points, chains: ChainIndex, longest: Floats | float, segments_per_turn: float, *, lasting: int = 1) -> Floats:
+    """Lengths (k,) that make so many segments of a full turn, at most the longest (k,).
+
+    Only as much curvature counts as lasts for `lasting` entries, an odd number: an outline that turns within fewer has a corner there,
+    which short chords do not make rounder. So curvature, to the left and to the right, is opened by an interval (Serra, "Image analysis
+    and mathematical morphology", 1982).
+    """
+    size = np.broadcast_to(longest, z.shape).astype(np.float64)
+    chosen = np.diff(chains.starts) > max(lasting, 2)
+    if not chosen.any():
+        return size
+    line = PaddedChains(chains, chosen, BESIDE + lasting)
+    points = np.zeros(chains.indices.max() + 1, np.complex128)
+    points[chains.indices] = z
+    curvature = _curvature(line.points(points))
+    curvature[~(line.own | line.ring)] = 0
+    steepest = np.maximum(_opened(np.maximum(curvature, 0), lasting), _opened(np.maximum(-curvature, 0), lasting))
+    # The last entry of a ring is its first again.
+    start, end = chains.ring_ends
+    own = chosen[chains.chain]
+    own[end] = False
+    allowed = np.full(len(z), np.inf)
+    allowed[own] = 2 * np.pi / segments_per_turn / np.maximum(steepest[line.own], 1e-9)
+    allowed[end] = allowed[start]
+    return np.asarray(np.minimum(size, allowed))
+
+
+def _curvature(line: Points) -> Floats:
+    """Curvature (k,) at places on a line, positive where it turns left: the turn between chords to either side, over their length."""
+    result = np.zeros(len(line))
+    chord = line[BESIDE:] - line[:-BESIDE]
+    behind, ahead = chord[:-BESIDE], chord[BESIDE:]
+    result[BESIDE:-BESIDE] = np.angle(ahead * behind.conj()) / np.maximum((np.abs(behind) + np.abs(ahead)) / 2, 1e-9)
+    return result
+
+
+def _opened(values: Floats, width: int) -> Floats:
+    """Lower each of the values (k,), above 0, to the greatest bound that as many in a row as the odd `width` reach."""
+    return _sliding(np.maximum, _sliding(np.minimum, values, width), width)
+
+
+def _sliding(extreme: np.ufunc, values: Floats, width: int) -> Floats:
+    """Take the least, or the greatest, of each value (k,) and those beside it in a window of odd width; beyond the ends they are 0."""
+    beyond = np.zeros(width // 2)
+    found, reach = np.concatenate([beyond, values, beyond]), 1
+    while reach < width:  # each entry has the extreme of `reach` values from there on
+        further = min(reach, width - reach)
+        found, reach = extreme(found[:-further], found[further:]), reach + further
+    return np.asarray(found)
 
 
 def by_chords(s: Simplification, wanted: Floats) -> Floats:

@@ -11,6 +11,7 @@ import specimens
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
+from img2tri.arrays import ChainIndex
 from img2tri.shapes.sizes.outline_sizes import ROOM_TO_EVEN, arc_lengths, by_chords, by_curvature, by_thickness, limit_growth
 from img2tri.shapes.trace.crack_edges import find_crack_edges
 from img2tri.shapes.trace.dual_edges import lay_out
@@ -144,6 +145,46 @@ def test_a_corner_asks_for_short_chords_beside_it():
     assert (size[near] < 5).all()
     far = (abs(z - (20 + 20j)) > 6) & (dual_edges.chains.chain == dual_edges.chains.chain[np.flatnonzero(near)[0]])
     assert (size[far] == LONGEST).all()
+
+
+def bent(radius, turn, side=30.0):
+    """A mask's outline whose dense points are put 0.8 px apart on a straight line, an arc, and a straight line, as one open chain."""
+    way = np.arange(-side, side + radius * turn, 0.8)
+    angle = np.clip(way / radius, 0, turn)
+    z = radius * np.exp(1j * (angle - np.pi / 2)) + np.exp(1j * angle) * (way - radius * angle)
+    return z, ChainIndex(np.arange(len(z)), np.array([0, len(z)]), np.array([False])), (way > 3) & (way < radius * turn - 3)
+
+
+@pytest.mark.parametrize("radius", [6.0, 10.0, 40.0])
+@pytest.mark.parametrize("side", [1, -1])
+def test_an_arc_that_lasts_is_no_corner(radius, side):
+    z, chains, on_arc = bent(radius, np.pi)
+    z = z if side == 1 else z.conj()
+    np.testing.assert_allclose(by_curvature(z, chains, LONGEST, 20, lasting=15)[on_arc], 2 * np.pi * radius / 20, rtol=0.05)
+
+
+def test_a_corner_that_is_rounded_asks_for_nothing_unless_all_turns_count():
+    z, chains, _ = bent(2.0, np.pi / 2)
+    assert (by_curvature(z, chains, LONGEST, 20) < 4).any()
+    assert (by_curvature(z, chains, LONGEST, 20, lasting=15) == LONGEST).all()
+
+
+def test_waves_of_the_steps_of_pixels_ask_for_nothing():
+    x = np.arange(0, 200, 0.8)
+    z, chains = x + 0.3j * np.sin(x / 2), ChainIndex(np.arange(250), np.array([0, 250]), np.array([False]))
+    assert (by_curvature(z, chains, LONGEST, 20) < LONGEST).any()
+    assert (by_curvature(z, chains, LONGEST, 20, lasting=15) == LONGEST).all()
+
+
+@pytest.mark.parametrize("start", [0, 7, 31])
+def test_a_ring_has_no_beginning(start):
+    radius, n = 12.0, 90
+    z = np.where(np.arange(n) < 45, 1, 0.5) * radius * np.exp(2j * np.pi * np.arange(n) / n)
+    at = np.append((np.arange(n) + start) % n, start)
+    size = by_curvature(z[at], ChainIndex(at, np.array([0, n + 1]), np.array([True])), LONGEST, 20, lasting=15)
+    first = np.append(np.arange(n), 0)
+    expected = by_curvature(z[first], ChainIndex(first, np.array([0, n + 1]), np.array([True])), LONGEST, 20, lasting=15)
+    np.testing.assert_allclose(size, expected[at], rtol=1e-12)
 
 
 def test_chords_that_came_out_short_stay_so():
