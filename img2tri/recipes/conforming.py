@@ -39,7 +39,7 @@ Mesh = tuple[Floats, Ints, Ints]
 """Vertices (n, 2), triangles (m, 3) and regions (m,)."""
 
 USUAL_TRIANGLES = 2000  # what the default edge length aims at
-USUAL_SEGMENTS, LEAST_SHARE = 20, 1 / 3  # to a full turn by default; chords get no shorter for that than this share of the length wanted
+USUAL_SEGMENTS, SHORTEST_SHARE = 20, 1 / 3  # to a full turn by default; chords get no shorter for that than this share of the length wanted
 LASTING = 15  # dense points, 11 to 15 px: what turns within fewer is a corner
 RESPACINGS = 2  # how often outlines are spaced anew around places that need shorter chords
 MOST_TRIANGLES = 100_000_000  # some 2 GB of mesh, and several times that on the way
@@ -94,7 +94,7 @@ class Sizes:
     elements_across
         How many edges at least across the thinnest places; None is not looked after.
     segments_per_turn
-        How many edges at least to a full turn of an outline; None: `USUAL_SEGMENTS`, as far as `LEAST_SHARE` allows.
+        How many edges at least to a full turn of an outline; None: `USUAL_SEGMENTS`, as far as `SHORTEST_SHARE` allows.
     shortest
         Edges of outlines are not made shorter than this for the sake of the above, only where tolerance or topology need it.
     gradation
@@ -293,5 +293,5 @@ def _wanted(z: Points, dual_edges: DualEdges, sizes: Sizes) -> Floats:
     if sizes.segments_per_turn is not None:
         wanted = by_curvature(z, dual_edges.chains, wanted, sizes.segments_per_turn, lasting=LASTING)
     else:
-        wanted = np.maximum(by_curvature(z, dual_edges.chains, wanted, USUAL_SEGMENTS, lasting=LASTING), LEAST_SHARE * wanted)
+        wanted = np.maximum(by_curvature(z, dual_edges.chains, wanted, USUAL_SEGMENTS, lasting=LASTING), SHORTEST_SHARE * wanted)
     return np.asarray(np.maximum(wanted, max(sizes.shortest, LEAST_PIECE)))
