@@ -118,8 +118,10 @@ def test_no_element_folds_and_none_overlap(name):
 
 @pytest.mark.parametrize("seed", range(6))
 def test_noise_does_not_fold_elements(seed):
+    """The Jacobian is at least a tenth of that of the straight triangle everywhere."""
     mesh = mesh_image(np.random.default_rng(seed).integers(0, 3, (24, 24)), labels=True, edge_length=8)
-    assert (jacobians(curved(mesh)) > 0).all()
+    least = jacobians(curved(mesh)).min(axis=1)
+    assert (least >= 0.1 * 2 * oracles.areas(mesh.vertices, mesh.triangles)).all()
 
 
 def test_a_side_that_would_fold_its_element_is_pulled_back():
