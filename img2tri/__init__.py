@@ -19,7 +19,8 @@ The house around the stages:
                   `mesh_pictures` shows it
     tiles/        `mesh_tiles`: one image larger than memory, in parts, on one process or a Dask cluster
     app/          the viewer with knobs, in a browser and in notebooks
-    types         records handed between stages; `arrays` and `errors` are what all files share
+    types         records handed between stages; `Frame`, one of them, turns pixels into world coordinates, and "8px" or "2%" into lengths
+    arrays        what all files share: chains as arrays of indices, edges, sorting, the plane as complex numbers; `errors` likewise
     cli/          the command line, ``img2tri``; ``python -m img2tri`` begins in `__main__`
 
 The words one has to know:
