@@ -26,7 +26,7 @@ MAPS = sorted({path.parent for path in FILES})
 ORDER = [
     {"errors"},
     {"arrays"},
-    {"types"},
+    {"types", "cells"},
     set(ROOMS),
     {"paper"},
     {"recipes", "certificate"},

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from img2tri.arrays import Bools, Floats, Ints, Points, cross, runs
+from img2tri.arrays import Bools, Floats, Ints, Points, cross
+from img2tri.cells import cells, in_cells_beside, pairs_across, pairs_beside
 from img2tri.shapes.simplify.simplification import Simplification
 
 GAP = 0.25  # px, the least distance kept between chords, over their deviations
@@ -71,55 +72,24 @@ def _near(middle: Points, half: Floats, fresh: Bools) -> tuple[Ints, Ints]:
     """Pairs of squares around their middles that may meet, one of them fresh, each pair once: found in grids of cells.
 
     There is a grid for each class of sizes, for pairs whose larger square is of that class; its cells are as wide as the widest pair is
-    apart. Cells are numbered row by row, so those around a square are three stretches of numbers::
-
-        . 7 8 9 .
-        . 4 5 6 .      5 and what comes after it in the order of cells, 6; 7 to 9: each pair is seen from one of its two
-        . 1 2 3 .
+    apart.
     """
     size = np.ceil(np.log2(half) / 2)  # classes of a ratio of 4
     found = [np.zeros((2, 0), np.int64)]
     for each in np.unique(size).tolist():
-        width = 2 * float(half[size == each].max())
-        cell, above = _cells(middle, width)
+        cell, above = cells(middle, 2 * float(half[size == each].max()))
         chosen = size <= each
         if not fresh.all():
-            chosen &= _around(cell, above, fresh)
+            chosen &= in_cells_beside(cell, above, fresh)
         order = np.flatnonzero(chosen)
         order = order[np.argsort(cell[order])]
         large = size[order] == each
         own, smaller = order[large], order[~large]
-        at, others = cell[own], cell[smaller]
-        for first, last in ((None, at + 1), (at + above - 1, at + above + 1)):
-            found.append(_between(own, own, at, first, last))
+        found.append(pairs_beside(own, cell[own], above))
         if len(smaller):
-            found += [_between(own, smaller, others, row - 1, row + 1) for row in (at - above, at, at + above)]
+            found.append(pairs_across(own, cell[own], smaller, cell[smaller], above))
     i, j = np.concatenate(found, axis=1)
     return i, j
-
-
-def _between(own: Ints, others: Ints, cells: Ints, first: Ints | None, last: Ints) -> Ints:
-    """Pair (2, p) each square with others, in cells that rise, from its first to its last cell; None: with all that come after itself."""
-    begin = np.arange(1, len(own) + 1) if first is None else np.searchsorted(cells, first)
-    run, place = runs(np.searchsorted(cells, last, side="right") - begin)
-    return np.stack([own[run], others[begin[run] + place]])
-
-
-def _cells(places: Points, width: float) -> tuple[Ints, int]:
-    """Return the number of the cell each place is in, row by row with an empty cell around all, and by how much the cell above differs."""
-    column, row = (np.floor((part - part.min()) / width).astype(np.int64) + 1 for part in (places.real, places.imag))
-    above = int(column.max()) + 2
-    return row * above + column, above
-
-
-def _around(cell: Ints, above: int, chosen: Bools) -> Bools:
-    """Tell which of all squares lie in the cell of a chosen one, or in one beside it."""
-    marked = np.zeros(int(cell.max()) + 2 + above, bool)
-    hit = cell[chosen]
-    for up in (-above, 0, above):
-        for right in (-1, 0, 1):
-            marked[hit + up + right] = True
-    return marked[cell]
 
 
 def _distance(a: Points, b: Points, c: Points, d: Points) -> Floats:

@@ -10,9 +10,9 @@ a second one gains nothing.
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial import cKDTree
 
-from img2tri.arrays import Bools, Floats, Ints, Points, as_rows, independent
+from img2tri.arrays import Bools, Floats, Ints, Points, independent
+from img2tri.cells import cells, pairs_beside
 from img2tri.triangles.generate.pslg import Pslg
 
 CROWDED = 0.68  # two points nearer than this times the wanted edge length are one too many
@@ -49,12 +49,14 @@ def _neighbours(points: Points, wanted: Floats) -> tuple[Ints, Ints]:
     Searching within the largest length would find far too many pairs where lengths are small. So lengths go in classes which
     overlap: the wanted lengths of two neighbours differ by less than the overlap.
     """
-    found = [np.zeros((0, 2), np.int64)]
+    found = [np.zeros((2, 0), np.int64)]
     top, least = float(wanted.max(initial=0.0)), float(wanted.min(initial=np.inf))
     halvings = max(0, int(np.ceil(np.log2(top / (0.4 * least))))) if top > 0 else 0
     for longest in top / 2.0 ** np.arange(halvings):
         members = np.flatnonzero((wanted <= longest) & (wanted > SPAN * longest))
-        tree = cKDTree(as_rows(points[members]))
-        found.append(np.sort(members[tree.query_pairs(CROWDED * longest, output_type="ndarray")], axis=1))
-    lower, higher = np.concatenate(found).T
+        if len(members):
+            cell, above = cells(points[members], CROWDED * longest)
+            order = np.argsort(cell)
+            found.append(np.sort(pairs_beside(members[order], cell[order], above), axis=0))
+    lower, higher = np.concatenate(found, axis=1)
     return lower, higher

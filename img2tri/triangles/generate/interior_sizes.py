@@ -11,11 +11,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from img2tri.arrays import Floats, Ints, Points, as_rows
+
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
 
 
 @dataclass(frozen=True)
@@ -63,12 +66,16 @@ class SizeFunction:
     @cached_property
     def _classes(self) -> list[tuple[cKDTree, Floats]]:
         """Sources with lengths within a factor of two, and these; the shortest first."""
+        from scipy.spatial import cKDTree
+
         level: Ints = np.floor(np.log2(self.largest / self.lengths)).astype(np.int64)
         return [(cKDTree(as_rows(self.sources[level == k])), self.lengths[level == k]) for k in np.unique(level)[::-1]]
 
 
 def nearest_of(sources: Points, points: Points, reach: float = np.inf) -> tuple[Floats, Ints]:
     """Return the distance (n,) of points to the nearest source within reach, and its number, or the count of sources if there is none."""
+    from scipy.spatial import cKDTree
+
     return _query(cKDTree(as_rows(sources)), points, reach)
 
 

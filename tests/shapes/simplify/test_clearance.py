@@ -11,7 +11,7 @@ import specimens
 
 from img2tri.shapes.place.placement import place_outlines
 from img2tri.shapes.simplify import clearance
-from img2tri.shapes.simplify.clearance import GAP, _around, _cells, crowded_chords, sharp_chords, to_segment
+from img2tri.shapes.simplify.clearance import GAP, crowded_chords, sharp_chords, to_segment
 from img2tri.shapes.simplify.simplification import space_evenly
 from img2tri.shapes.trace.crack_edges import find_crack_edges
 from img2tri.types import Frame
@@ -111,18 +111,6 @@ def test_where_nothing_is_fresh_nothing_is_sharp():
     first, last = d.chords
     assert sharp_chords(d, first, last, np.ones(len(first), bool)).any()
     assert not sharp_chords(d, first, last, np.zeros(len(first), bool)).any()
-
-
-@pytest.mark.parametrize("reach", [0.3, 1.0, 4.0, 30.0])
-def test_no_place_within_reach_is_left_out_and_none_far_away_is_looked_at(reach):
-    rng = np.random.default_rng(0)
-    places = rng.uniform(-10, 10, 2000) + 1j * rng.uniform(-5, 15, 2000)
-    for count in (1, 20):
-        chosen = np.isin(np.arange(2000), rng.choice(2000, count, replace=False))
-        away = np.abs(places[:, None] - places[chosen]).min(axis=1)
-        found = _around(*_cells(places, reach), chosen)
-        assert found[away <= reach].all()
-        assert not found[away > 2 * np.sqrt(2) * reach].any()
 
 
 @pytest.mark.parametrize("count", [0, 1, 7, 300])
