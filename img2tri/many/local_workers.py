@@ -1,8 +1,10 @@
 """Where functions are called: in this process, or in processes of this machine; `dask_cluster` has the third place.
 
-The processes are those of `concurrent.futures`, started afresh, as the libraries behind a mesh do not bear to be forked. They hear nothing
-of Ctrl-C, which a terminal sends to all: they are ended from here, and tidy up files that are not whole. When one dies the pool is broken
-with all it was given; `in_order` calls those again, the first of them alone, which tells whose fault it was.
+The processes are those of `concurrent.futures`. The libraries behind a mesh do not bear to be forked while they work, so that none is
+forked from this process, but from one that has loaded them once and does nothing (a fork server; where there is none they are started
+afresh). It stays for the next time, with the environment it was started in. They hear nothing of Ctrl-C, which a terminal sends to all:
+they are ended from here, and tidy up files that are not whole. When one dies the pool is broken with all it was given; `in_order` calls
+those again, the first of them alone, which tells whose fault it was.
 """
 
 from __future__ import annotations
@@ -127,8 +129,17 @@ class Processes:
 
     def _started(self) -> ProcessPoolExecutor:
         if self.pool is None:
-            self.pool = ProcessPoolExecutor(self.count, multiprocessing.get_context("spawn"), initializer=_prepare)
+            self.pool = ProcessPoolExecutor(self.count, _context(), initializer=_prepare)
         return self.pool
+
+
+def _context() -> Any:
+    """Return how processes are started."""
+    if "forkserver" not in multiprocessing.get_all_start_methods():
+        return multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(["img2tri.many.preloaded"])
+    return context
 
 
 def _called(function: Callable[..., Any], *given: Any) -> Any:

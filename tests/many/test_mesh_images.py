@@ -7,6 +7,7 @@ import os
 import signal
 import sys
 import time
+from multiprocessing.forkserver import _forkserver
 from pathlib import Path
 
 import numpy as np
@@ -224,10 +225,12 @@ def deadly(tmp_path, monkeypatch):
     hook.mkdir()
     (hook / "sitecustomize.py").write_text(HOOK)
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(hook), *filter(None, sys.path)]))
+    _forkserver._stop()  # the next one hears of the hook
     paths = [str(tmp_path / name) for name in ("a.png", "once.png", "b.png", "always.png", "c.png", "d.png")]
     for path in paths:
         Image.fromarray(DISCS[0]).save(path)
-    return paths
+    yield paths
+    _forkserver._stop()
 
 
 def all_but_one(found, paths):
