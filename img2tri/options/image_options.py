@@ -101,7 +101,7 @@ class SegmentOptions(TypedDict, total=False):
             "Gray level on the image's own scale; strictly greater is white and meshed. \"otsu\": Otsu's level.\n\n"
             '"alpha": the silhouette, all that is opaque. Rising levels, as in [110, 190]: the values between two are a region, label 0 up '
             "to the first, 1 up to the second, and so on.",
-            none="the silhouette where pixels are transparent, the middle of two values, else Otsu's level; 240 in the paper's recipes",
+            none="the silhouette if pixels are transparent, half-way if it has two values, else Otsu's level; 240 in the paper's recipes",
             check=o.one_level_or_more,
             typed=parsing.numbers_or_word,
             sign="T",
@@ -146,7 +146,7 @@ class SegmentOptions(TypedDict, total=False):
         int | Iterable[int] | None,
         Option(
             None,
-            "Labels whose pixels are given to their nearest neighbours first: watershed lines, borders, what is not indexed.\n\n"
+            "Labels whose pixels are given to their nearest neighbours first: watershed lines, borders, pixels that were not indexed.\n\n"
             "So regions parted by thin lines touch, and have interfaces. The image is a label map then, as with `labels`.",
             none="every label keeps its pixels",
             check=o.one_label_or_more,
@@ -203,7 +203,7 @@ class NameOptions(TypedDict, total=False):
         Option(
             None,
             "Names of regions by label, as in 1=bone.",
-            none="those of a segmentation of 3D Slicer, else regions have their labels",
+            none="those of a segmentation of 3D Slicer, else a region is called by its label",
             check=o.names_by_label,
             typed=parsing.label_and_value,
             sign="N=NAME",

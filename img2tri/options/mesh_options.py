@@ -74,7 +74,7 @@ class SymmetryOptions(TypedDict, total=False):
             None,
             '"x", "y" or "xy": left and right, bottom and top, or both are mirror images in the mesh as in the image; vertices lie '
             "exactly on the axis. An image that is not its own mirror image is refused.",
-            none="a symmetric image gets a mesh that is not",
+            none="the mesh of a symmetric image is not quite symmetric",
             check=o.one_of("x", "y", "xy"),
             sign="D",
             recipes=("conforming",),
@@ -118,7 +118,7 @@ class SizeOptions(TypedDict, total=False):
         float,
         Option(
             0.17,
-            "By how much the length may grow per unit of distance; smaller gives better triangles, and more.",
+            "By how much the length may grow per unit of distance; smaller gives better triangles, and more of them.",
             check=o.real(least=0.001, most=100),
             typed=parsing.number,
             sign="G",
@@ -128,7 +128,7 @@ class SizeOptions(TypedDict, total=False):
         float | str | None,
         Option(
             None,
-            "Outlines get no shorter edges for the sake of the other options of lengths, only where tolerance, topology or angles need it.",
+            "The other options of lengths make no edge of an outline shorter than this; tolerance, topology and angles may.",
             none="as short as these ask for",
             check=o.length,
             sign="L",
@@ -194,8 +194,8 @@ class FillOptions(TypedDict, total=False):
         bool,
         Option(
             True,
-            "Move vertices on curved outlines outwards so that the straight edges enclose the area the curve encloses, or leave them "
-            "on them.\n\nTrue makes computations on the mesh several times as exact.",
+            "Vertices on curved outlines lie a little outwards, so that straight edges enclose the area of the curve; else they lie on it."
+            "\n\nComputations on the mesh are several times as exact with it.",
             check=o.yes_or_no,
         ),
     ]
@@ -212,7 +212,7 @@ class FillOptions(TypedDict, total=False):
         int,
         Option(
             0,
-            "Of all that is random: scattered points. The same seed gives the same mesh.",
+            "For scattered points, all that is random. The same seed gives the same mesh.",
             check=o.whole(most=2**64 - 1),
             typed=parsing.whole_number,
             sign="N",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 import textwrap
 from collections.abc import Callable
 from types import NoneType, UnionType
@@ -56,9 +57,12 @@ def words_of(kind: Any) -> str:
     --------
     >>> words_of(float | str | None)
     'float | str | None'
+    >>> from collections.abc import Sequence
+    >>> words_of(int | Sequence[int | str] | None)
+    'int | Sequence[int | str] | None'
     """
     if get_origin(kind) in (Union, UnionType):
         return " | ".join(map(words_of, get_args(kind)))
     if kind is NoneType:
         return "None"
-    return kind.__name__ if type(kind) is type else str(kind).rpartition(".")[2]
+    return kind.__name__ if type(kind) is type else re.sub(r"\b\w+\.", "", str(kind))
