@@ -36,6 +36,8 @@ class TriangleMesh(MeshExports):
         Where the image lies.
     names
         The user's names of regions.
+    edge_sets
+        Name -> (k, 2) int64, vertices at the ends of edges: named sets that `load` found in a file; they are in `sets` too.
     origin
         How the mesh was made and what it is to be judged by; None for meshes not made by `mesh_image`.
 
@@ -53,6 +55,7 @@ class TriangleMesh(MeshExports):
     frame: Frame = field(default_factory=lambda: Frame((1, 1)))
     names: Mapping[int, str] = field(default_factory=dict)
     origin: Provenance | None = None
+    edge_sets: Mapping[str, Ints] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         vertices, triangles = check_mesh(self.vertices, self.triangles)
@@ -190,8 +193,8 @@ def load_mesh(path: str | os.PathLike[str]) -> TriangleMesh:
     -------
     TriangleMesh
         With regions, names, the place of the image and its sides, so that `sets` are those that were saved, as far as the format holds
-        them: .stl and .off have triangles alone, .ply, .obj and .glb regions too. Quadratic triangles become those of their corners. There
-        is no `report`: its image is not in the file.
+        them; named sets of edges that other programs made are kept in `edge_sets`. Files of .stl and .off have triangles alone, .ply, .obj
+        and .glb regions too. Quadratic triangles become those of their corners. There is no `report`: its image is not in the file.
 
     Raises
     ------
@@ -201,6 +204,9 @@ def load_mesh(path: str | os.PathLike[str]) -> TriangleMesh:
         If it holds other cells, or triangles in space, such as a solid; ``img2tri quality`` measures these.
     """
     from img2tri.views.formats.readers.flat_mesh import flat_mesh
+    from img2tri.views.formats.readers.known_sets import known_sets
 
-    vertices, triangles, regions, frame, names = flat_mesh(path)
-    return TriangleMesh(vertices, triangles, regions, frame, names)
+    flat = flat_mesh(path)
+    mesh = TriangleMesh(flat.vertices, flat.triangles, flat.regions, flat.frame, flat.names)
+    known = known_sets(flat, mesh.sets().edges) if flat.facets else {}
+    return replace(mesh, edge_sets=known) if known else mesh

@@ -38,6 +38,7 @@ class MeshExports:
     regions: Ints
     frame: Frame
     names: Mapping[int, str]
+    edge_sets: Mapping[str, Ints]
     origin: Provenance | None
 
     @property
@@ -124,7 +125,7 @@ class MeshExports:
         """Name the parts: regions, sides of the frame, outer boundary, holes, interfaces ``A__B``, and pieces such as ``left_1``."""
         from img2tri.views.objects.sets.named_sets import named_sets
 
-        return named_sets(self.vertices, self.triangles, self.regions, bounds=self._bounds(), names=self.names)
+        return named_sets(self.vertices, self.triangles, self.regions, bounds=self._bounds(), names=self.names, given=self.edge_sets)
 
     def to_skfem(self, *, order: int = 1) -> MeshTri:
         """Return a ``skfem.MeshTri`` with regions as subdomains and named edges as boundaries; needs ``img2tri[fem]``.
@@ -231,7 +232,8 @@ class MeshExports:
         shape = choice("cells", cells or "wedges", CELLS)
         periodic = self.origin.settings.get("periodic") if self.origin else None
         about = self._data(data=data, quality=quality)
-        flat = flat_cells(nodes, elements, self.regions, names=self.names, bounds=self._bounds(), periodic=periodic, **about)
+        about |= {"periodic": periodic, "edge_sets": self.edge_sets}
+        flat = flat_cells(nodes, elements, self.regions, names=self.names, bounds=self._bounds(), **about)
         if height is None:
             for name, value in (("layers", None if layers == 1 else layers), ("cells", cells)):
                 if value is not None:
@@ -258,6 +260,8 @@ class MeshExports:
         from img2tri.triangles.tools.quality_summary import measure
 
         about: dict[str, Any] = {"version": __version__, "names": {str(label): name for label, name in self.names.items()}}
+        if self.edge_sets:
+            about["edge_sets"] = list(self.edge_sets)
         if self.origin is not None:
             f = self.frame
             about |= {"recipe": self.origin.recipe, **self.origin.settings, "names": about["names"], "options": self.origin.options}

@@ -134,6 +134,7 @@ def flat_cells(
     point_data: Mapping[str, ArrayLike] | None = None,
     field_data: Mapping[str, str] | None = None,
     periodic: str | None = None,
+    edge_sets: Mapping[str, Ints] | None = None,
 ) -> Cells:
     """Make cells of a plane mesh.
 
@@ -152,6 +153,8 @@ def flat_cells(
         As in `img2tri.views.objects.sets.named_sets.named_sets`.
     periodic
         "x", "y" or "xy" for meshes that repeat themselves.
+    edge_sets
+        Name -> (k, 2) vertices of edges: sets that are known, see `img2tri.views.objects.sets.named_sets.named_sets`.
 
     Raises
     ------
@@ -171,7 +174,7 @@ def flat_cells(
     if nodes.max() >= len(made.points) or nodes.min() < 0:
         raise MeshError(f"elements: expected indices from 0 to {len(made.points) - 1}, found {nodes.min()} to {nodes.max()}")
     nodes = nodes.astype(np.int64)
-    sets = named_sets(made.points[:, :2], made.faces, made.regions.astype(np.int64), bounds=bounds, names=names)
+    sets = named_sets(made.points[:, :2], made.faces, made.regions.astype(np.int64), bounds=bounds, names=names, given=edge_sets)
     return Cells(
         made.points, nodes, FLAT_KINDS[nodes.shape[1]], made.regions.astype(np.int64),
         names={label: name for name, label in sets.labels.items()}, sides=sets.sides, tags=sets.tags, cell_data=made.cell_data,

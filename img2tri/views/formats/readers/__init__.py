@@ -2,6 +2,7 @@
 
 read_any                  any file by its suffix, with all it holds
 flat_mesh                 a plane mesh of any format: its arrays, where its image lies, the names its user gave
+known_sets      named sets of edges of a file beyond those that are found anew
 solid_quality             cells in space as a file holds them -> a table of their quality
 file_contents                     what a file holds: the record all readers return, and the labels in names and tables
 read_stl_ply_obj_off_glb  the formats trimesh knows

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -25,28 +25,43 @@ class NotFlatError(MeshError):
     found: Found
 
 
-def flat_mesh(path: str | os.PathLike[str]) -> tuple[Floats, Ints, Ints, Frame, dict[int, str]]:
-    """Read vertices (n, 2), triangles (m, 3), regions (m,), the frame, and the names of regions."""
+class FlatMesh(NamedTuple):
+    """Vertices (n, 2), triangles (m, 3), regions (m,), the frame, names of regions, and the nodes of each set, vertices or -1.
+
+    `listed` are the names of the sets img2tri knew besides those it finds; None in files of other programs.
+    """
+
+    vertices: Floats
+    triangles: Ints
+    regions: Ints
+    frame: Frame
+    names: dict[int, str]
+    facets: dict[str, Ints]
+    listed: list[str] | None
+
+
+def flat_mesh(path: str | os.PathLike[str]) -> FlatMesh:
+    """Read a plane mesh of triangles."""
     found = read_file(path)
     if found.kind not in PLANE_KINDS:
         raise _not_flat(found, f"{os.fspath(path)}: expected triangles, found cells of a solid ({found.kind})")
     z = found.points[found.cells[:, :3], 2]
     if np.ptp(z) > PLANE_ROUNDING * np.ptp(found.points, axis=0).max():
         raise _not_flat(found, f"{os.fspath(path)}: expected a plane mesh, found z from {z.min():g} to {z.max():g}")
-    points, triangles = found.points[:, :2], found.cells[:, :3]
+    points, triangles, vertex = found.points[:, :2], found.cells[:, :3], np.arange(len(found.points))
     if found.kind == "triangle6":
         corners, renumbered = np.unique(triangles, return_inverse=True)
         points, triangles = points[corners], renumbered.reshape(-1, 3)
+        vertex = np.full(len(vertex), -1)
+        vertex[corners] = np.arange(len(corners))
     if _area(points, triangles) < 0:  # drawn with y down
         triangles = triangles[:, ::-1]
     about = _about(found)
-    return (
-        np.ascontiguousarray(points),
-        np.ascontiguousarray(triangles),
-        found.regions,
-        _frame(about, float(z.flat[0])),
-        _names(found, about),
-    )
+    facets = {name: vertex[rows[:, :2]] for name, rows in found.facets.items() if len(rows)}
+    return FlatMesh(
+        np.ascontiguousarray(points), np.ascontiguousarray(triangles), found.regions, _frame(about, float(z.flat[0])),
+        _names(found, about), facets, list(map(str, about.get("edge_sets", []))) if about else None,
+    )  # fmt: skip
 
 
 def _not_flat(found: Found, message: str) -> NotFlatError:

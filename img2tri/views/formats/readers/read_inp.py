@@ -1,7 +1,8 @@
 """INP read back: the bytes of a file of Abaqus or CalculiX -> cells of one kind, with regions, names, and the facets of each set.
 
 What img2tri writes is read completely. Of the files of other programs those are read whose elements are all triangles, all wedges or all
-tetrahedra, with no parts or instances; each ELSET of ``*ELEMENT`` is a region.
+tetrahedra, and lines beside triangles, with no parts or instances. Each ELSET of ``*ELEMENT`` is a region, or, where sets of ``*ELSET``
+have each element once, each of these; sets of lines are sets of edges.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from img2tri.views.objects.solver_cells import CELL_SIDES, FLAT_KINDS, SOLID_KIN
 _FLAT_ELEMENTS = re.compile(r"(?:CPS|CPE|CPEG|CAX|M3D|DC2D|DCAX|STRI|SFM3D|R3D|S)([36])[A-Z]*")
 _SOLID_ELEMENTS_READ = re.compile(r"(?:C3D|DC3D|AC3D)(6|15|4|10)[A-Z]*")
 _SOLID_KINDS_READ = {**SOLID_KINDS, 4: "tetra", 10: "tetra10"}
+_LINES = re.compile(r"(?:T2D|T3D|B2|B3|B)[123]\d?[A-Z]*")
 # Our number of each side, in the order of Abaqus.
 _ABAQUS_SIDES = {"triangle": (0, 1, 2), "wedge": (3, 4, 0, 1, 2), "tetra": (0, 1, 2, 3)}
 
@@ -62,22 +64,34 @@ def parse_inp(data: bytes) -> Found:
     nodes = np.array(rows).reshape(-1, 4)
     numbers = nodes[:, 0].astype(np.int64)
 
-    parts = [(options.get("ELSET", ""), lines) for key, options, lines in blocks if key == "ELEMENT"]
-    kind, width = _kind({options["TYPE"].upper() for key, options, _ in blocks if key == "ELEMENT"})
+    whole = [(options, lines) for key, options, lines in blocks if key == "ELEMENT"]
+    parts = [(options.get("ELSET", ""), lines) for options, lines in whole if not _LINES.fullmatch(options["TYPE"].upper())]
+    kind, width = _kind({options["TYPE"].upper() for options, _ in whole} - {o["TYPE"].upper() for o, _ in whole if _is_line(o)})
     tables = [np.array(_whole_numbers(lines)).reshape(-1, 1 + width) for _, lines in parts]
     labels = _labels_of_sets([name for name, _ in parts], json.loads(said.get("labels", "{}")))
     order = np.argsort(np.concatenate(tables)[:, 0], kind="stable")
     elements = np.concatenate(tables)[order]
     regions = np.repeat([labels[name] for name, _ in parts], [len(table) for table in tables])[order]
     cells = _rows_of(numbers, elements[:, 1:])
+    sets = _members(blocks)
+    if "labels" not in said:
+        regions, labels = _by_sets(sets, elements[:, 0], regions, labels)
 
-    facets: dict[str, Ints] = {}
+    explicit = {options["ELSET"] for key, options, _ in blocks if key == "ELSET"}
+    listed = {number for name in explicit for number in sets[name]}
+    lines_of = {row[0]: row[1:3] for options, lines in whole if _is_line(options) for row in _integer_rows(lines)}
+    facets = {
+        name: _rows_of(numbers, np.array([lines_of[number] for number in mine]))
+        for name, mine in sets.items()
+        if mine and all(number in lines_of for number in mine) and (name in explicit or not listed.issuperset(mine))
+    }
     for key, options, lines in blocks:
-        if key == "NSET" and "GENERATE" not in options:
-            facets[options["NSET"]] = _rows_of(numbers, np.array(_whole_numbers(lines), np.int64)[:, None])
+        if key == "NSET":
+            facets[options["NSET"]] = _rows_of(numbers, np.array(_listed(options, lines), np.int64)[:, None])
     for key, options, lines in blocks:
         if key == "SURFACE" and options.get("TYPE", "ELEMENT").upper() == "ELEMENT":
-            facets |= _facets(options["NAME"], lines, elements[:, 0], cells, kind)
+            single = [f"{number},{side}" for line in lines for number, side in _one_by_one(line, sets)]
+            facets |= _facets(options["NAME"], single, elements[:, 0], cells, kind)
     names = {label: called.get(name, name) for name, label in labels.items() if name}
     facets = {called.get(name, name): part for name, part in facets.items() if not name.startswith("PERIODIC_")}
     texts = {name: text for name, text in said.items() if not text.startswith("named ")}
@@ -102,6 +116,51 @@ def _keyword_blocks(text: str) -> Iterator[tuple[str, dict[str, str], list[str]]
 
 def _whole_numbers(lines: list[str]) -> list[int]:
     return [int(word) for line in lines for word in line.split(",") if word.strip()]
+
+
+def _integer_rows(lines: list[str]) -> list[list[int]]:
+    return [_whole_numbers([line]) for line in lines]
+
+
+def _is_line(options: dict[str, str]) -> bool:
+    return _LINES.fullmatch(options["TYPE"].upper()) is not None
+
+
+def _listed(options: dict[str, str], lines: list[str]) -> list[int]:
+    """Return the numbers in a set: as listed, or from the first to the last in steps."""
+    if "GENERATE" not in options:
+        return [int(word) for line in lines for word in line.split(",") if word.strip().isdigit()]
+    return [number for first, last, *step in _integer_rows(lines) for number in range(first, last + 1, *step)]
+
+
+def _members(blocks: list[tuple[str, dict[str, str], list[str]]]) -> dict[str, list[int]]:
+    """Return the numbers of the elements in each set, also of sets that are named in others."""
+    sets: dict[str, list[int]] = {}
+    for key, options, lines in blocks:
+        if key == "ELEMENT" and "ELSET" in options:
+            sets.setdefault(options["ELSET"], []).extend(row[0] for row in _integer_rows(lines) if row)
+        elif key == "ELSET":
+            named = [word.strip() for line in lines for word in line.split(",") if word.strip() in sets]
+            sets.setdefault(options["ELSET"], []).extend([*_listed(options, lines), *(number for name in named for number in sets[name])])
+    return sets
+
+
+def _by_sets(sets: dict[str, list[int]], numbers: Ints, regions: Ints, labels: dict[str, int]) -> tuple[Ints, dict[str, int]]:
+    """Return the regions and labels of elements: those of sets that have each element once and say more than the blocks of elements."""
+    mine = {name: np.flatnonzero(np.isin(numbers, rows)) for name, rows in sets.items() if name not in labels}
+    mine = {name: rows for name, rows in mine.items() if len(rows)}
+    if not mine or not np.array_equal(np.sort(np.concatenate(list(mine.values()))), np.arange(len(numbers))):
+        return regions, labels
+    found = np.empty_like(regions)
+    for label, rows in enumerate(mine.values(), 1):
+        found[rows] = label
+    return found, {name: label for label, name in enumerate(mine, 1)}
+
+
+def _one_by_one(line: str, sets: dict[str, list[int]]) -> list[tuple[str, str]]:
+    """Return the elements and sides of a line of a surface: an element, or a set of them, and a side."""
+    who, _, side = (word.strip() for word in line.partition(","))
+    return [(str(number), side) for number in sets[who]] if who in sets else [(who, side)]
 
 
 def _kind(types: set[str]) -> tuple[str, int]:

@@ -26,6 +26,7 @@ import numpy as np
 from img2tri.arrays import Bools, Floats, Ints
 from img2tri.errors import ParameterError
 from img2tri.views.objects.body_per_region import unique_names
+from img2tri.views.objects.sets.known_edges import with_known_edges
 from img2tri.views.objects.sets.numbers_in_files import FRAME, OUTER, file_numbers, set_tags
 from img2tri.views.objects.sets.split_at_corners import connected_pieces, outer_pieces
 from img2tri.views.objects.sets.triangles_by_label import grouped
@@ -78,6 +79,7 @@ def named_sets(
     *,
     bounds: tuple[float, float, float, float] | None = None,
     names: Mapping[int, str] | None = None,
+    given: Mapping[str, Ints] | None = None,
 ) -> Sets:
     """Name the regions of a mesh, and its edges on the boundary and between regions.
 
@@ -92,6 +94,9 @@ def named_sets(
         ``outer``.
     names
         Label -> name. Regions without one are called ``region_3``; a name given twice gets the label behind it.
+    given
+        Name -> (k, 2) vertices at the ends of edges: sets that are known, as from a file. Their edges are in no other set; of two that have
+        edges in common, one within the other is a piece of it, else the first has them.
 
     Returns
     -------
@@ -149,6 +154,8 @@ def named_sets(
         name = name if name not in found else f"{name}_{one}_{other}"
         found[name], between[name] = inside[rows], (one, other)
 
+    if given:
+        found, part_of = with_known_edges(triangles, twins, regions, given, found, part_of)
     found = {name: found[name] for name in [*(name for name in found if name not in part_of), *part_of] if len(found[name])}
     for label, name in called.items():
         if name in found:
@@ -160,8 +167,8 @@ def named_sets(
         sides={name: np.stack(np.divmod(sides, 3), axis=1) for name, sides in found.items()},
         edges={name: np.stack([start[sides], end[sides]], axis=1) for name, sides in found.items()},
         tags=set_tags(found, file_numbers(list(called)).values()),
-        part_of=part_of,
-        between=between,
+        part_of={name: whole for name, whole in part_of.items() if name in found},
+        between={name: pair for name, pair in between.items() if name in found},
     )
 
 
