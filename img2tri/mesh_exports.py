@@ -207,7 +207,8 @@ class MeshExports:
             about["colours"] = self.colours
             vectors.save_outlines(path, self.outlines(), names=self.names, **about)
         else:
-            about = {"names": self.names, "colours": self.colours, "base": self._base(base), **self._data(data=data)}
+            about = self._data(data=data, quality=SURFACE_FORMATS[suffix].arrays)
+            about |= {"names": self.names, "colours": self.colours, "base": self._base(base)}
             save(path, self.vertices, self.triangles, self.regions, height=height, **about)
 
     def _cells(

@@ -210,6 +210,8 @@ def _plane(points: NDArray[Any], faces: NDArray[Any], regions: NDArray[Any] | No
 
 def _check_rounding(path: str | os.PathLike[str], made: Surface) -> None:
     """Refuse a surface whose faces or points would not survive the rounding to float32."""
+    if not made.closed and _far_from_rounding(made):
+        return
     with np.errstate(over="ignore", invalid="ignore"):
         rounded = made.points.astype(np.float32).astype(np.float64)
         exact, after = _normals(made.points, made.faces), _normals(rounded, made.faces)
@@ -221,6 +223,23 @@ def _check_rounding(path: str | os.PathLike[str], made: Surface) -> None:
             f"{len(made.faces)} triangles would collapse and {merged} vertices fall together. Move the mesh nearer to 0 or scale it, "
             "or save it as .ply, .vtp or .vtu, which hold float64"
         )
+
+
+def _far_from_rounding(made: Surface) -> bool:
+    """Tell whether all triangles of a flat mesh are far taller than what rounding moves, and no two points are rounded to one."""
+    # Half the distance of two float32 at the largest coordinate; triangles of more than four times the diagonal of that cannot turn over.
+    moved = float(np.abs(made.points).max()) * 2.0**-24
+    plane = made.points[:, :2]
+    if moved > 2.0**100:
+        return False
+    rounded = np.ascontiguousarray(plane.astype(np.float32) + np.float32(0)).view(np.uint64).ravel()
+    rounded.sort()
+    a, b, c = (plane[made.faces[:, i]].T for i in range(3))
+    (ux, uy), (vx, vy) = b - a, c - a
+    wx, wy = vx - ux, vy - uy
+    longest = np.maximum(np.maximum(ux * ux + uy * uy, vx * vx + vy * vy), wx * wx + wy * wy)
+    tall = np.abs(ux * vy - uy * vx) > 6 * moved * np.sqrt(longest)
+    return bool(tall.all() and (rounded[1:] != rounded[:-1]).all())
 
 
 def _normals(points: Floats, faces: Ints) -> Floats:

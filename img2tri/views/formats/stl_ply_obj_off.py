@@ -26,9 +26,13 @@ def stl(made: Surface) -> bytes:
     faces = np.zeros(len(corners), _STL_FACE)
     faces["corners"] = corners
     # Normals of the triangles as stored, so that a reader who computes them finds the same.
-    normals = np.cross(*(corners[:, i].astype(np.float64) - corners[:, 0] for i in (1, 2)))
-    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-    faces["normal"] = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0)
+    if made.closed:
+        normals = np.cross(*(corners[:, i].astype(np.float64) - corners[:, 0] for i in (1, 2)))
+        lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+        faces["normal"] = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0)
+    else:
+        (ux, uy), (vx, vy) = ((corners[:, i, :2].astype(np.float64) - corners[:, 0, :2]).T for i in (1, 2))
+        faces["normal"][:, 2] = np.sign(ux * vy - uy * vx)
     return b"binary STL by img2tri".ljust(80) + len(faces).to_bytes(4, "little") + faces.tobytes()
 
 

@@ -64,12 +64,13 @@ def vtu_file(
     meshio, through which solvers read VTU, ends the process at a text array.
     """
     size = cells.shape[1]
-    ends, types = np.arange(size, cells.size + 1, size), np.full(len(cells), VTK_TYPES[kind], np.uint8)
+    width: Any = np.int32 if max(cells.size, len(points)) < 2**31 else np.int64
+    ends, types = np.arange(size, cells.size + 1, size, dtype=width), np.full(len(cells), VTK_TYPES[kind], np.uint8)
     parts = {
         "PointData": "".join(_array(name, values) for name, values in point_data.items()),
         'CellData Scalars="region"': "".join(_array(name, values) for name, values in cell_data.items()),
         "Points": _array("Points", points),
-        "Cells": _array("connectivity", cells.ravel()) + _array("offsets", ends) + _array("types", types),
+        "Cells": _array("connectivity", cells.ravel().astype(width)) + _array("offsets", ends) + _array("types", types),
     }
     body = "".join(f"<{tag}>\n{text}</{tag.split()[0]}>\n" for tag, text in parts.items())
     fields = "".join(_array(name, values, tuples=True) for name, values in (field_data or {}).items())

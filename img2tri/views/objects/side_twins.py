@@ -45,8 +45,7 @@ def side_twins(triangles: Ints, n: int) -> Ints:
     start, end = triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
     # Both sides of an edge have the same key, so they follow each other.
     key = np.minimum(start, end) * n + np.maximum(start, end)
-    order = np.argsort(key)
-    ordered = key[order]
+    order, ordered = _sorted(key, n * n)
     alike = ordered[1:] == ordered[:-1]
     one, other = order[:-1][alike], order[1:][alike]
     twice = int(np.count_nonzero(start[one] == start[other]))
@@ -58,6 +57,16 @@ def side_twins(triangles: Ints, n: int) -> Ints:
     twins = np.full(len(key), -1)
     twins[one], twins[other] = other, one
     return twins
+
+
+def _sorted(keys: Ints, beyond: int) -> tuple[Ints, Ints]:
+    """Return the order of keys below `beyond`, and the keys in this order: sorted with their places behind them, which is much faster."""
+    bits = len(keys).bit_length()
+    if beyond.bit_length() + bits > 63:
+        order = np.argsort(keys)
+        return order, keys[order]
+    both = np.sort(keys << bits | np.arange(len(keys)))
+    return both & ((1 << bits) - 1), both >> bits
 
 
 def next_side(sides: Ints) -> Ints:
