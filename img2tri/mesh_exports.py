@@ -110,6 +110,8 @@ class MeshExports:
         if solid and height is None:
             raise ParameterError("height: expected a length with solid=True, found None")
         if solid or order != 1 or layers != 1:
+            if base is not None:
+                raise ParameterError(f"base: expected to be left out with cells, found {base!r}; it is for closed surfaces")
             from img2tri.views.formats.solvers.vtu_vtkhdf import to_grid
 
             return remember(to_grid(self._cells(height, layers, order, cells)), self)
@@ -118,8 +120,8 @@ class MeshExports:
         from img2tri.views.objects.flat_or_extruded import surface
         from img2tri.views.objects.to_pyvista import to_pyvista
 
-        made = to_pyvista(surface(self.vertices, self.triangles, self.regions, height=height, base=self._base(base), **self._data()))
-        return remember(made, self)
+        made = surface(self.vertices, self.triangles, self.regions, height=height, base=self._base(base), **self._data())
+        return remember(to_pyvista(made), self)
 
     def sets(self) -> Sets:
         """Name the parts: regions, sides of the frame, outer boundary, holes, interfaces ``A__B``, and pieces such as ``left_1``."""
@@ -176,8 +178,7 @@ class MeshExports:
         """
         from img2tri.mesh_pictures import save_page
         from img2tri.views.formats import svg_dxf_geojson as vectors
-        from img2tri.views.formats.atomic_write import known_suffix
-        from img2tri.views.formats.save_load import SURFACE_FORMATS, save
+        from img2tri.views.formats.save_load import SURFACE_FORMATS, known_suffix, save
         from img2tri.views.formats.solvers.save_for_solvers import EXPORTS, export
 
         suffix = known_suffix(path, (*SURFACE_FORMATS, *EXPORTS, *vectors.DRAWING_FORMATS, ".html"))
@@ -185,9 +186,9 @@ class MeshExports:
             raise ParameterError(f"image: expected to be left out for {suffix}, which holds no image; it is for .html")
         whole = suffix == ".vtu" and height is not None and layers is None and cells is None and order == 1
         if suffix in EXPORTS and not whole:
-            made = self._cells(height, layers or 1, order, cells, data=data, quality=suffix in (".vtu", ".vtkhdf"))
             if base is not None:
                 raise ParameterError(f"base: expected to be left out for {suffix} with cells, found {base!r}; it is for closed surfaces")
+            made = self._cells(height, layers or 1, order, cells, data=data, quality=suffix in (".vtu", ".vtkhdf"))
             export(path, made, version=version, deck=deck, plane=plane)
             return
         given: dict[str, Any] = {"layers": layers, "version": version, "deck": deck, "plane": plane, "cells": cells}
@@ -196,8 +197,7 @@ class MeshExports:
             if value is not None:
                 raise ParameterError(f"{name}: expected to be left out for {suffix}, found {value!r}; it is for {', '.join(EXPORTS)}")
         if suffix == ".html" or suffix in vectors.DRAWING_FORMATS:
-            drawn: dict[str, Any] = {"height": height, "data": data, "base": base}
-            for name, value in drawn.items():
+            for name, value in (("height", height), ("data", data), ("base", base)):
                 if value is not None:
                     raise ParameterError(f"{name}: expected None for {suffix}, which is a drawing, found {value!r}")
         if suffix == ".html":
@@ -211,17 +211,8 @@ class MeshExports:
             about |= {"names": self.names, "colours": self.colours, "base": self._base(base)}
             save(path, self.vertices, self.triangles, self.regions, height=height, **about)
 
-    def _cells(
-        self,
-        height: float | Mapping[int, float] | None,
-        layers: int,
-        order: int,
-        cells: str | None = None,
-        *,
-        data: Any = None,
-        quality: bool = True,
-    ) -> Cells:
-        """Return the elements solvers compute on, with their named sets."""
+    def _cells(self, height: float | Mapping[int, float] | None, layers: int, order: int, cells: str | None = None, **values: Any) -> Cells:
+        """Return the elements solvers compute on, with their named sets; `values` as of `_data`."""
         from img2tri.views.objects.extruded_wedges import wedges
         from img2tri.views.objects.solver_cells import flat_cells, solid_cells
         from img2tri.views.objects.tetrahedra import tetrahedra
@@ -232,7 +223,7 @@ class MeshExports:
             nodes, elements, middles = curved.nodes, curved.triangles, curved.nodes[n:]
         shape = choice("cells", cells or "wedges", CELLS)
         periodic = self.origin.settings.get("periodic") if self.origin else None
-        about = self._data(data=data, quality=quality)
+        about = self._data(**values)
         about |= {"periodic": periodic, "edge_sets": self.edge_sets}
         flat = flat_cells(nodes, elements, self.regions, names=self.names, bounds=self._bounds(), **about)
         if height is None:

@@ -198,6 +198,8 @@ def test_a_base_joins_loose_parts_in_one_closed_body(tmp_path):
     assert pv.read(tmp_path / "a.stl").n_open_edges == 0
     with pytest.raises(ParameterError, match="base: expected a height too"):
         mesh.save(tmp_path / "b.stl", base=2)
+    with pytest.raises(ParameterError, match="base: expected to be left out with cells"):
+        mesh.to_pyvista(3, solid=True, base=2)
     with pytest.raises(ParameterError, match="base: expected to be left out for .msh"):
         mesh.save(tmp_path / "b.msh", 3, base=2)
 

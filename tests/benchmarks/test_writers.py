@@ -2,7 +2,7 @@
 
     pytest -m benchmark -s tests/benchmarks/test_writers.py
 
-Kept figures are in ``ratchet.toml``; the goals are those for 1.4 million triangles.
+Kept figures are in ``ratchet.toml``; goals, at 1.4 million triangles, are printed beside what was found.
 """
 
 from __future__ import annotations
@@ -38,7 +38,8 @@ def test_writers_are_as_quick_as_they_were(tmp_path):
     assert not worse
 
 
-def test_writing_millions_of_triangles_takes_a_few_times_their_making(tmp_path):
-    found = shares(blob(4096), 3, GOALS, tmp_path, 1)
+def test_writing_millions_of_triangles_is_as_quick_as_it_was(tmp_path):
+    found = shares(blob(4096), 3, GOALS, tmp_path, 2)
     print("  " + ", ".join(f"{suffix} {share:.2f} (goal {GOALS[suffix]})" for suffix, share in found.items()))
-    assert all(share <= GOALS[suffix] for suffix, share in found.items())
+    worse = [line for suffix, share in found.items() for line in compare(f"write {suffix}, 1.4 M", {"ratio": share})]
+    assert not worse
