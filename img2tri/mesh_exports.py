@@ -178,7 +178,8 @@ class MeshExports:
         """
         from img2tri.mesh_pictures import save_page
         from img2tri.views.formats import svg_dxf_geojson as vectors
-        from img2tri.views.formats.save_load import SURFACE_FORMATS, known_suffix, save
+        from img2tri.views.formats.atomic_write import known_suffix
+        from img2tri.views.formats.save_load import SURFACE_FORMATS, save
         from img2tri.views.formats.solvers.save_for_solvers import EXPORTS, export
 
         suffix = known_suffix(path, (*SURFACE_FORMATS, *EXPORTS, *vectors.DRAWING_FORMATS, ".html"))

@@ -9,5 +9,6 @@ svg_dxf_geojson  writes the outlines as drawings
 solvers/         writes MSH, INP, BDF, XDMF, MESH, VTU, VTKHDF, with named parts
 readers/         reads them back, with all they hold
 number_rows      arrays of numbers as text, one row in a line
+array_names      names of arrays that files can hold
 atomic_write     a file is whole or it is not there
 """

@@ -28,6 +28,7 @@ from numpy.typing import ArrayLike, NDArray
 from img2tri.arrays import Floats, Ints
 from img2tri.errors import FileError, MeshError, ParameterError
 from img2tri.views.formats import threemf
+from img2tri.views.formats.array_names import check_array_names
 from img2tri.views.formats.atomic_write import known_suffix, store, writable
 from img2tri.views.formats.glb import glb
 from img2tri.views.formats.readers.read_msh_bdf import READERS, by_text
@@ -130,6 +131,7 @@ def save(
         raise ParameterError(
             f"data: expected no arrays for {target.suffix}, which has no place for them, found {', '.join(others)}; use {homes}"
         )
+    check_array_names(others, target.suffix.lower())
     if form.bodies and (height is not None or form.apart):
         parts = bodies(
             vertices, triangles, regions, height=height, z=z, names=names, colours=colours, cell_data=cell_data, field_data=field_data,

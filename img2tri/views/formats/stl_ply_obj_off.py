@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from img2tri.errors import ParameterError
 from img2tri.views.formats.number_rows import EXACT, exact_doubles, real_rows, whole_rows
 from img2tri.views.objects.flat_or_extruded import Surface
 from img2tri.views.objects.sets.numbers_in_files import file_numbers
@@ -50,7 +51,8 @@ def ply(made: Surface) -> bytes:
         numbers = file_numbers(labels.tolist())
         regions = np.array([numbers[label] for label in labels.tolist()])[which]
         notes.append(f"labels: {json.dumps({number: label for label, number in numbers.items()})}")
-    faces, points = _columns({"region": regions, **made.cell_data}), _columns(made.point_data)
+    faces = _columns({"region": regions, **made.cell_data}, "vertex_indices")
+    points = _columns(made.point_data, "x", "y", "z")
     # A row per face: 3, its corners, its values, without gaps; and per point its coordinates and values.
     face_rows = _table({"count": np.full(len(made.faces), 3, "u1"), "corners": made.faces.astype("<i4")}, faces)
     point_rows = _table({"place": made.points.astype("<f8")}, points)
@@ -69,13 +71,18 @@ def ply(made: Surface) -> bytes:
     return "\n".join(header).encode() + point_rows.tobytes() + face_rows.tobytes()
 
 
-def _columns(arrays: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
-    """Return the properties of arrays: as int where that holds all values, else as double."""
+def _columns(arrays: Mapping[str, NDArray[Any]], *taken: str) -> dict[str, NDArray[Any]]:
+    """Return the properties of arrays: as int where that holds all values, else as double; no name twice, nor one that is `taken`."""
     found: dict[str, NDArray[Any]] = {}
     for name, values in arrays.items():
         plain = "_".join(name.split())
         parts = {plain: values} if values.ndim == 1 else {f"{plain}_{i}": column for i, column in enumerate(values.T, 1)}
-        found |= {each: column.astype("<i4") if _fits_int32(column) else exact_doubles(name, column) for each, column in parts.items()}
+        for each, column in parts.items():
+            if each in found or each in taken:
+                raise ParameterError(
+                    f"data: expected names that differ in .ply too, found {name!r}, whose property {each} is there already"
+                )
+            found[each] = column.astype("<i4") if _fits_int32(column) else exact_doubles(name, column)
     return found
 
 

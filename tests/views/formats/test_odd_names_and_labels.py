@@ -10,6 +10,7 @@ from views.plates import cells
 
 import img2tri
 from img2tri import ParameterError, TriangleMesh
+from img2tri.views.formats.readers.read_any import read_file
 
 NAMES = {
     1: "a b", 2: "naïve", 3: 'q"uo\'te', 4: "com,ma", 5: "new\nline", 6: "骨", 7: "<x>&y", 8: "q'uo'te", 9: "q:o", 10: "Left", 11: "a__b",
@@ -77,3 +78,41 @@ def test_whole_numbers_a_double_cannot_hold_are_refused(tmp_path, suffix):
 def test_names_no_file_can_hold_are_refused():
     with pytest.raises(ParameterError, match="names: expected letters that can be written, found"):
         img2tri.mesh_image(np.ones((9, 9), np.uint8), labels=True, names={1: "bell\a"})
+
+
+ARRAYS = (".ply", ".vtp", ".vtu", ".vtkhdf", ".msh", ".xdmf")
+
+
+@pytest.mark.parametrize("suffix", ARRAYS)
+@pytest.mark.parametrize("name", ["", "a/b", 'a"b', "a'b", "a<b", "a&b", "a\nb", " a"])
+def test_names_of_arrays_that_would_be_lost_or_spoil_a_file_are_refused(tmp_path, suffix, name):
+    mesh = strip_of([1, 2])
+    with pytest.raises(ParameterError, match="data: expected names without quotes, slashes"):
+        mesh.save(tmp_path / f"a{suffix}", data={name: np.arange(4)})
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("suffix", "data", "message"),
+    [
+        (".ply", {"a b": np.arange(4), "a_b": np.arange(4)}, "differ in .ply too, found 'a_b', whose property a_b is there already"),
+        (".ply", {"x": np.arange(6)}, "differ in .ply too, found 'x'"),
+        (".ply", {"v": np.ones((4, 2)), "v_1": np.ones(4)}, "differ in .ply too, found 'v_1'"),
+        (".vtkhdf", {"T.1": np.arange(4)}, r"names without dots for .vtkhdf, found 'T\.1'"),
+    ],
+)
+def test_names_that_a_format_would_change_are_refused(tmp_path, suffix, data, message):
+    with pytest.raises(ParameterError, match=message):
+        strip_of([1, 2]).save(tmp_path / f"a{suffix}", data=data)
+
+
+@pytest.mark.parametrize("suffix", ARRAYS)
+def test_arrays_of_other_names_are_kept(tmp_path, suffix):
+    data = {"温度": np.arange(4.0), "flow (m)": np.ones((4, 3)), "T": np.where(np.arange(6) % 2, np.nan, 1.0)}
+    strip_of([1, 2]).save(tmp_path / f"a{suffix}", data=data)
+    if suffix in (".vtp", ".vtu"):
+        found = pv.read(tmp_path / f"a{suffix}")
+        assert set(data) <= {*found.cell_data.keys(), *found.point_data.keys()}
+    elif suffix != ".ply":
+        read = read_file(tmp_path / f"a{suffix}")
+        assert set(data) <= {*read.cell_data, *read.point_data}

@@ -22,6 +22,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from img2tri.errors import ParameterError
+from img2tri.views.formats.array_names import check_array_names
 from img2tri.views.formats.atomic_write import known_suffix, store, writable
 from img2tri.views.formats.solvers.bdf import bdf
 from img2tri.views.formats.solvers.inp import inp
@@ -107,6 +108,7 @@ def export(
     if arrays and not EXPORTS[suffix].arrays:
         homes = ", ".join(other for other, form in EXPORTS.items() if form.arrays)
         raise ParameterError(f"data: expected no arrays for {suffix}, which has no place for them, found {', '.join(arrays)}; use {homes}")
+    check_array_names(arrays, suffix)
     stem, dot = os.path.splitext(os.fspath(path))
     files = EXPORTS[suffix].write(made, **options)
     targets = {ending: writable(f"{stem}{ending}{dot}", EXPORTS) for ending in files}
