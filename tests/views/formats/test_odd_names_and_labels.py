@@ -95,7 +95,7 @@ def test_names_of_arrays_that_would_be_lost_or_spoil_a_file_are_refused(tmp_path
 @pytest.mark.parametrize(
     ("suffix", "data", "message"),
     [
-        (".ply", {"a b": np.arange(4), "a_b": np.arange(4)}, "differ in .ply too, found 'a_b': property a_b is there already"),
+        (".ply", {"a b": np.arange(4), "a_b": np.arange(4)}, "differ in .ply too, found 'a_b', whose property a_b is there already"),
         (".ply", {"x": np.arange(6)}, "differ in .ply too, found 'x'"),
         (".ply", {"v": np.ones((4, 2)), "v_1": np.ones(4)}, "differ in .ply too, found 'v_1'"),
         (".vtkhdf", {"T.1": np.arange(4)}, r"names without dots for .vtkhdf, found 'T\.1'"),
