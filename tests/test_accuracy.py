@@ -250,7 +250,17 @@ def test_at_a_checkerboard_tips_are_parted_and_areas_kept(gradation):
     assert oracles.mesh_topology(mesh.triangles) == (2, 0)
     sides = shapely.union_all(shapely.linestrings(oracles.pixel_sides(labels)))
     ends = mesh.vertices[np.unique(oracles.boundary(mesh.triangles))]
-    assert shapely.distance(sides, shapely.points(ends)).max() <= 0.25
+    off = shapely.distance(sides, shapely.points(ends))
+    # Two tips meet where four pixels do. By triangles of half a pixel they lose an eighth each; a shift t of the points half a
+    # pixel from there gives t (3/4 + t / 2) back at each of two sides: t is 1 / 12, less than 1 / 8 whatever else moves. No others move.
+    rows, columns = np.nonzero(
+        (labels[1:, 1:] == labels[:-1, :-1]) & (labels[1:, :-1] == labels[:-1, 1:]) & (labels[1:, 1:] != labels[1:, :-1])
+    )
+    tips = np.stack([columns + 1, labels.shape[0] - rows - 1], axis=1)
+    assert len(tips) > 0
+    beside = np.abs(ends[:, None] - tips).max(axis=2).min(axis=1) <= 0.6
+    assert off[beside].max() <= 1 / 8
+    assert off[~beside].max() <= 1e-9
 
 
 def test_smooth_and_pixel_outlines_enclose_the_same():

@@ -37,9 +37,8 @@ def check_promises(mesh, labels, *, background, tolerance, min_angle, connectivi
         oracles.check_faithful(v, t, r, labels, background=background, tolerance=max(tolerance, SURE))
     report = mesh.report
     # Below half a pixel a narrow place may need more than the tolerance; then the report says so.
-    # And regions so small and ragged may have no way to their area: the report says that too.
     too_far = [line for line in report.warnings if tolerance < SURE and "apart at" in line]
-    assert [line for line in report.warnings if ": area " not in line] == too_far
+    assert report.warnings == too_far
     assert report.hausdorff <= (SURE if too_far else tolerance) * (1 + 1e-9)
     assert report.smallest_angle == pytest.approx(oracles.angles(v, t).min(), abs=1e-6)
     for label in meshed:

@@ -82,7 +82,6 @@ def test_outlines_of_noise_are_turned_with_the_image(density):
     """Turned only: the corner of a tip that is its own mirror image has to be given to one of the two pixels there."""
     rng = np.random.default_rng(0)
     for _ in range(8):
-        # Wide splines along chains that are all bends are known to some 1e-5 px, for rounding.
         assert turned_points_differ_by((rng.random((13, 16)) < density).astype(int), turns=4) < 1e-5
 
 

@@ -13,8 +13,8 @@ from img2tri.shapes.simplify.area_preservation import area_errors, preserve_area
 from img2tri.shapes.simplify.simplification import Simplification
 
 AREA_ERROR = 1e-4  # relative, of a region: above it vertices are offset for its sake, at first
-FOR_ALL = 2  # rounds for all regions
-STILL_OFF = 0.003  # relative, of a region: above it this is done again
+FOR_ALL = 1  # rounds for all regions
+STILL_OFF = 0.0003  # relative, of a region: above it this is done again
 MOST_AREA_ROUNDS = 12
 
 

@@ -14,12 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from img2tri.arrays import Floats, Points, as_complex, cross
+from img2tri.shapes.place.area_exchange import exchange_areas
 from img2tri.shapes.place.constrained_smoothing import BoundedChains, restore_swept_areas, swept_areas, widest_fitting_spline
 from img2tri.shapes.place.corners import find_corners
 from img2tri.shapes.place.known_crossings import OutlineLevel, known_crossings
-from img2tri.shapes.place.node_placement import bend_to_nodes, meeting_places
+from img2tri.shapes.place.node_placement import bend_to_nodes, meeting_places, open_wedges
 from img2tri.shapes.trace.crack_edges import CrackEdges
-from img2tri.shapes.trace.dual_edges import BOUND, DualEdges, cut_chains, lay_out
+from img2tri.shapes.trace.dual_edges import BOUND, DualEdges, cut_chains, lay_out, pixel_areas
 from img2tri.types import ColourMix, Frame, Outlines
 
 
@@ -66,11 +67,14 @@ def place_outlines(
     bounded = _with_free_ends(_bounded(dual_edges, points, shift, slack), dual_edges)
     shift, ends = widest_fitting_spline(bounded)
     # From here on the nodes on the frame stay where they slid to, and all others where their chains lead.
-    nodes = np.where(dual_edges.slides, bounded.points, bounded.points + shift * bounded.axis)
-    nodes = meeting_places(replace(bounded, points=nodes), ends, movable, dual_edges.bounds)
-    bounded = replace(bounded, points=nodes, axis=dual_edges.vector)
+    nodes = meeting_places(replace(bounded, points=bounded.points + shift * bounded.axis), ends, movable, dual_edges.bounds)
+    bounded = replace(bounded, points=np.where(dual_edges.slides, bounded.points, nodes), axis=dual_edges.vector)
     shift = bend_to_nodes(bounded, np.where(dual_edges.slides, shift, 0.0), ends, dual_edges.bounds != 0)
-    shift = restore_swept_areas(bounded, shift, _wanted_areas(bounded, dual_edges, slack))
+    wanted = _wanted_areas(bounded, dual_edges, slack)
+    shift = restore_swept_areas(bounded, shift, wanted)
+    bounded, shift = open_wedges(bounded, shift, dual_edges.blunt_middle, dual_edges.is_junction, dual_edges.bounds)
+    wanted = _wanted_areas(bounded, dual_edges, slack)
+    shift = exchange_areas(bounded, shift, wanted, *dual_edges.regions, pixel_areas(dual_edges))
     return dual_edges.outlines(bounded.points + shift * dual_edges.vector), dual_edges
 
 
@@ -120,6 +124,8 @@ def place_on_pixel_sides(crack_edges: CrackEdges, frame: Frame) -> tuple[Outline
     bends = one[turns & (np.diff(passes, axis=1)[:, 0] == 1)]
     dual_edges = cut_chains(dual_edges, bends, frame)
     fair = dual_edges.fair_middle
-    vector = np.where(fair == dual_edges.middle, 0, dual_edges.vector)
+    vector = np.zeros_like(dual_edges.vector)
+    shifted = np.concatenate(dual_edges.beside_touching)
+    vector[shifted] = dual_edges.vector[shifted]
     dual_edges = replace(dual_edges, vector=vector, bounds=np.zeros_like(dual_edges.bounds))
     return dual_edges.outlines(fair), dual_edges

@@ -11,69 +11,80 @@ from dataclasses import replace
 import numpy as np
 
 from img2tri.arrays import Bools, Floats, Ints, cross
+from img2tri.shapes.region_pressures import region_pressures
 from img2tri.shapes.simplify.simplification import Simplification
 from img2tri.shapes.simplify.vertex_offsets import NormalOffsets, areas_beside, chord_arc_areas
 from img2tri.shapes.trace.dual_edges import pixel_areas
 
-LACKING_AREA = 0.003  # of the smaller region beside a chain: what it may lack before it gets more vertices
+LACKING_AREA = 0.003  # of the a region: what it may lack before it gets more vertices
 GREAT = 0.8  # of the greatest chord-arc area of a chain: the chords that get them
+EXCHANGE_ROUNDS = 3  # of leaving out vertices that cannot move the way they should
+LEAST_ROOM = 1e-3  # px, vertices that can move no farther are left out
 SMALL_REGION = 16  # pixels: the area of smaller regions is not looked after
 
 
 def preserve_areas(s: Simplification, *, tolerance: float, whole: bool = False, above: float = 0.0) -> Simplification:
-    """Offset vertices along the normal so that the chords enclose what the outlines enclose, chain by chain.
+    """Offset vertices along the normal so that the chords enclose what the outlines enclose, region by region.
 
-    Each vertex takes up half of the chord-arc areas beside it; what then is missing of a chain, since some vertices cannot move, is
-    shared evenly by the others. No vertex ends farther from the outline than the tolerance. Where that leaves a small region with too
-    much or too little, vertices are added, to be offset the next time.
+    Each vertex takes up half of the chord-arc areas beside it; what then is missing of a region, since some vertices cannot move, is
+    shared evenly by the others, see `region_pressures`. No vertex ends farther from the outline than the tolerance. Where that leaves a
+    region with too much or too little, vertices are added, to be offset the next time.
 
-    With `above` only the chains beside regions whose relative error is greater are looked after. `whole` chains are shifted, all their
-    vertices by the same, and no vertices are added: what lies well for its arcs stays so.
+    With `above`, the relative error that is borne, only that is shared what is missing. `whole` does so too, and adds no vertices: what
+    lies well for its arcs stays so.
     """
-    first, last = s.chords
-    chain, size = s.chains.chain, len(s.chains.rings)
     free = NormalOffsets(s, snapped=not whole)
-    on, (area, width) = chain[free.at], (part[free.at] for part in areas_beside(s))
-    cut = chord_arc_areas(s)
-    lost = np.bincount(chain[first], cut, size).astype(np.float64)
-
-    # Offsetting a vertex by d more sweeps d * width / 2.
-    step = np.zeros(len(on)) if whole else area / width
-    share = np.bincount(on, width / 2, size).astype(np.float64)
-    missing = lost - np.bincount(on, step * width / 2, size)
-    step += np.divide(missing, share, out=np.zeros_like(share), where=share > 0)[on]
-    chosen = np.ones(size, bool)
-    if above:
-        off = area_errors(s) > above
-        chosen = off[s.outlines.left] | off[s.outlines.right]
-        step[~chosen[on]] = 0
-    offset = free.shifted(s.offset, step, tolerance)
-    taken = ((offset - s.offset)[free.at] * free.right(s.offset).conj()).real
-    lacking = np.abs(lost - np.bincount(on, taken * width / 2, size))
+    area, width = (part[free.at] for part in areas_beside(s))
+    taken = s if whole or above else replace(s, offset=free.shifted(s.offset, area / width, tolerance))
+    step = _exchange(taken, free, width, tolerance)
+    result = replace(s, offset=free.shifted(taken.offset, step, tolerance))
+    if whole:
+        return result
+    areas = pixel_areas(s.dual_edges)
+    areas[0] = np.inf
+    off = np.abs(_gained_areas(result))
+    off[areas <= (SMALL_REGION if above else 0)] = 0
+    lacking = off > (above or LACKING_AREA) * areas
+    first, last = s.chords
     kept = s.kept.copy()
-    if not whole:
-        kept[_middles(s, first, last, np.abs(cut), chosen & (lacking > LACKING_AREA * _smaller_side(s)))] = True
-    return replace(s, kept=kept, offset=offset)
+    kept[_middles(s, first, last, np.abs(chord_arc_areas(s)), lacking[s.outlines.left] | lacking[s.outlines.right])] = True
+    return replace(result, kept=kept)
+
+
+def _exchange(s: Simplification, free: NormalOffsets, width: Floats, tolerance: float) -> Floats:
+    """Return steps (b,) to the right of the free vertices by which all regions get the areas they lack, see `region_pressures`.
+
+    Vertices that cannot move the way they should are left out of account, as far as these change.
+    """
+    chain, right_way = s.chains.chain[free.at], free.right(s.offset).conj()
+    left, right, lacking = s.outlines.left[chain], s.outlines.right[chain], -_gained_areas(s)
+    back, forth = (
+        ((free.shifted(s.offset, np.full(len(chain), way), tolerance) - s.offset)[free.at] * right_way).real for way in (-1.0, 1.0)
+    )
+    step = np.zeros(len(chain))
+    for _ in range(EXCHANGE_ROUNDS):
+        able = np.where(step > 0, forth, np.where(step < 0, -back, forth - back)) > LEAST_ROOM
+        pressure = region_pressures(left, right, width * able / 2, lacking)
+        step = pressure[left] - pressure[right]
+    return np.asarray(np.clip(step, back, forth))
 
 
 def area_errors(s: Simplification) -> Floats:
     """Relative difference (r,) between what chords and outlines enclose, by region number; 0 for regions of up to `SMALL_REGION` pixels."""
+    found, areas = _gained_areas(s), pixel_areas(s.dual_edges)
+    areas[0] = 0
+    return np.asarray(np.divide(np.abs(found), areas, out=np.zeros(len(found)), where=areas > SMALL_REGION))
+
+
+def _gained_areas(s: Simplification) -> Floats:
+    """Area (r,) that chords enclose more than outlines do, by region number."""
     first, last = s.chords
     chain = s.chains.chain
     arcs = np.concatenate([[0], np.cumsum(cross(s.dense[:-1], s.dense[1:]) / 2)])
     difference = cross(s.places[first], s.places[last]) / 2 - (arcs[last] - arcs[first])
     size = len(s.outlines.labels)
-    found = np.bincount(s.outlines.left[chain[first]], difference, size) - np.bincount(s.outlines.right[chain[first]], difference, size)
-    areas = pixel_areas(s.dual_edges)
-    areas[0] = 0
-    return np.asarray(np.divide(np.abs(found), areas, out=np.zeros(size), where=areas > SMALL_REGION))
-
-
-def _smaller_side(s: Simplification) -> Floats:
-    """Area (c,) of the smaller of the two regions beside each chain."""
-    areas = pixel_areas(s.dual_edges)
-    areas[0] = np.inf
-    return np.asarray(np.minimum(areas[s.outlines.left], areas[s.outlines.right]))
+    gained = np.bincount(s.outlines.left[chain[first]], difference, size) - np.bincount(s.outlines.right[chain[first]], difference, size)
+    return np.asarray(gained, np.float64)
 
 
 def _middles(s: Simplification, first: Ints, last: Ints, cut: Floats, chosen: Bools) -> Ints:

@@ -31,6 +31,7 @@ from img2tri.shapes.simplify.vertex_offsets import offset_towards_arcs
 
 LEANS, ENOUGH = 4, 0.95  # how often chords are moved towards their arcs at first, to come within this share of the tolerance
 LEAST_MOVE = 1e-4  # px
+SHORTEST_PART = 1.0  # px, conflicting chords are split into shorter parts only after their ends are snapped
 SHORTEST_CHORD = 0.3  # px, chords shorter than this are not left
 MOST_ROUNDS = 1000  # of splitting; thirty are many
 
@@ -102,11 +103,26 @@ class _Loop:
             conflicting = crowded_chords(s, first, last, self.deviation[first], fresh) | sharp_chords(s, first, last, fresh)
             short = np.abs(s.places[last] - s.places[first]) < SHORTEST_CHORD
             self.tested[first] = last
-            divisible = last - first > 1
+            divisible, early = last - first > 1, self._snapped_first(first, last)
             stuck = (conflicting | short) & ~divisible
-            self.s = _split(s, first[conflicting & divisible], last[conflicting & divisible])
-            self._change(_snap(self.s, np.concatenate([first[stuck], last[stuck]]), self.tolerance))
+            split = conflicting & divisible & ~early.any(axis=0)
+            self.s = _split(s, first[split], last[split])
+            ends = [end[stuck | (conflicting & snapped)] for end, snapped in zip((first, last), early, strict=True)]
+            self._change(_snap(self.s, np.concatenate(ends), self.tolerance))
         return self.s
+
+    def _snapped_first(self, first: Ints, last: Ints) -> Bools:
+        """Tell which ends (2, c) of chords are to be snapped before these are split, if they conflict.
+
+        Junctions, as a wedge that is sharp where its sides meet opens half a pixel further on; and the ends of chords so short that
+        pixels alone tell how they run.
+        """
+        s, ends = self.s, np.stack([first, last])
+        middle = s.dense[(first + last) // 2]
+        tiny = (np.abs(middle - s.places[ends]) < SHORTEST_PART).any(axis=0)
+        point = s.chains.indices[ends]
+        all_the_way = np.abs(s.dual_edges.blunt_middle[point] - s.dense[ends]) <= self.tolerance
+        return np.asarray((tiny | s.dual_edges.is_junction[point]) & all_the_way & ~s.snapped[point] & ~s.pinned[point])
 
     def _split_deviating(self) -> None:
         """Measure new chords. Those beyond the tolerance are moved towards their arcs so often, then split, until there are none."""
@@ -207,7 +223,7 @@ def _snap(s: Simplification, entries: Ints, tolerance: float) -> Simplification:
     chosen[indices[entries]] = True
     touched = np.flatnonzero((chosen & ~s.pinned)[indices])
     at = indices[touched]
-    way = s.dual_edges.fair_middle[at] - s.dense[touched]
+    way = s.dual_edges.blunt_middle[at] - s.dense[touched]
     whole = np.abs(way) <= tolerance
     way *= np.minimum(1, tolerance / np.maximum(np.abs(way), 1e-12))
     # Those that have gone back go on if there is more tolerance than there was, and return if they were moved since.

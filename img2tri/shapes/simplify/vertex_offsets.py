@@ -69,7 +69,7 @@ class NormalOffsets:
         before[self._begin], after[self._end] = self._dense[self._end - 1], self._dense[self._begin + 1]
         self._points = self._dense[self.at], before[self.at], after[self.at]
         self._snapped = stay[self.at]
-        self._rest = s.dual_edges.fair_middle[s.chains.indices[self.at]] - self._points[0]
+        self._rest = s.dual_edges.blunt_middle[s.chains.indices[self.at]] - self._points[0]
 
     def zigzag(self, offset: Points) -> Floats:
         """Return how far (b,) to move to smooth a zigzag from vertex to vertex: against the fourth difference, which arcs have none of."""

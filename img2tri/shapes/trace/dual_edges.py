@@ -28,6 +28,8 @@ BOUND = 0.49  # of the dual edge from its middle, to either side: no crossing co
 MOST_SHIFT = 0.25  # of the dual edge: how far a fair middle is from the middle
 LEAST_WIDTH = 0.1  # px
 FAIR_ROUNDS = 16
+BLUNT = np.cos(np.radians(81.0))  # the cosine of the least angle that outlines through fair middles may have
+BLUNT_ROUNDS, SMALLER = 40, 0.9  # of making shifts smaller where angles are less than that, and by how much each time
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +79,15 @@ class DualEdges:
         return np.asarray(self.vector != 0)
 
     @cached_property
+    def beside_touching(self) -> tuple[Ints, Ints]:
+        """The crossings (t,) before and after each corner of pixels at which two outlines pass, once for each of the two."""
+        at, k = self.chains.indices, len(self.crossed)
+        passes = np.searchsorted(np.sort(self.crack_edges.tail), self.crack_edges.head[self.crossed][:, None] + [0, 1])
+        twice = np.append(np.diff(passes, axis=1)[:, 0] == 2, np.zeros(len(self.middle) - k, bool))
+        here = np.flatnonzero(twice[at[:-1]] & (at[1:] < k) & (np.diff(self.chains.chain) == 0))
+        return at[here], at[here + 1]
+
+    @cached_property
     def fair_middle(self) -> Points:
         """(n,) the middles, shifted where pixels of one region touch in a corner, so that each keeps its share of that corner.
 
@@ -88,35 +99,70 @@ class DualEdges:
             b x a           b | a        and the outline around the other b likewise
                               x
         """
-        at, z, k = self.chains.indices, self.middle, len(self.crossed)
-        passes = np.searchsorted(np.sort(self.crack_edges.tail), self.crack_edges.head[self.crossed][:, None] + [0, 1])
-        twice = np.append(np.diff(passes, axis=1)[:, 0] == 2, np.zeros(len(z) - k, bool))
-        here = np.flatnonzero(twice[at[:-1]] & (at[1:] < k) & (np.diff(self.chains.chain) == 0))
-        one, other = at[here], at[here + 1]
+        at, z, (one, other) = self.chains.indices, self.middle, self.beside_touching
         turn = np.sign(cross(self.corner_after[one] - z[one], self.corner_after[other] - z[other]))
-        # What each crossing gives back: half of an eighth for each outline that cuts a corner next to it.
-        given = np.bincount(np.concatenate([one, other]), np.tile(turn / 16, 2), len(z)) * self.pixel.real * self.pixel.imag
+        # Each outline gets back the eighth that it cuts off at a corner, by the same shift of the crossings before and after it; a
+        # crossing between two such corners takes the mean of both.
+        eighth, moved = turn / 8 * self.pixel.real * self.pixel.imag, np.unique(np.concatenate([one, other]))
+        first, second = np.searchsorted(moved, one), np.searchsorted(moved, other)
+        pair = np.concatenate([first, second])
+        corners = np.bincount(pair, minlength=len(moved))
         shift, (begin, end) = np.zeros(len(z)), self.chains.ring_ends
         entry = np.zeros(len(z), np.int64)
         entry[at] = np.arange(len(at))
         entry[at[end]] = begin
-        moved = np.flatnonzero(given)
         behind, ahead = at[entry[moved] - 1], at[entry[moved] + 1]
         goes_round = np.isin(entry[moved], begin)
         behind[goes_round] = at[end[np.searchsorted(begin, entry[moved[goes_round]])] - 1]
         for _ in range(FAIR_ROUNDS if len(moved) else 0):
             # A shift t sweeps t * vector x (ahead - behind) / 2, with the neighbours half-way on theirs.
             there, back = (z[i] + shift[i] / 2 * self.vector[i] for i in (ahead, behind))
-            width = cross(self.vector[moved], (there - back) / 2)
-            wanted = np.divide(given[moved], width, out=np.zeros(len(moved)), where=np.abs(width) > LEAST_WIDTH)
-            shift[moved] = wanted.clip(-MOST_SHIFT, MOST_SHIFT)
+            width = cross(self.vector[moved], (there - back) / 2) / corners
+            swept = width[first] + width[second]
+            step = np.divide(eighth, swept, out=np.zeros(len(one)), where=np.abs(swept) > LEAST_WIDTH)
+            shift[moved] = (np.bincount(pair, np.tile(step, 2), len(moved)) / corners).clip(-MOST_SHIFT, MOST_SHIFT)
         return np.asarray(z + shift * self.vector)
+
+    @cached_property
+    def blunt_middle(self) -> Points:
+        """(n,) the fair middles, nearer to the middles where outlines through them would turn much more sharply than by right angles."""
+        z = self.fair_middle
+        heads = self.chains.heads
+        ends = self.chains.indices[np.stack([heads, heads + 1])]
+        near = np.zeros(len(z), bool)
+        near[ends[:, (z[ends] != self.middle[ends]).any(axis=0)]] = True
+        ends = ends[:, near[ends].any(axis=0)]
+        point, other = np.concatenate([ends, ends[::-1]], axis=1)
+        order = np.argsort(point, kind="stable")
+        point, other = point[order], other[order]
+        for _ in range(BLUNT_ROUNDS):
+            heading = z[other] - z[point]
+            sharp = np.zeros(len(z), bool)
+            for step in (1, 2, 3):  # at most four segments meet
+                one = np.flatnonzero(point[step:] == point[:-step])
+                a, b = heading[one], heading[one + step]
+                narrow = one[(a * b.conj()).real > BLUNT * np.abs(a) * np.abs(b)]
+                sharp[point[narrow]] = sharp[other[narrow]] = sharp[other[narrow + step]] = True
+            if not sharp.any():
+                break
+            z = np.where(sharp, self.middle + SMALLER * (z - self.middle), z)
+        return z
+
+    @cached_property
+    def _meeting(self) -> Ints:
+        """(n,) how many chains end at each point."""
+        ends = np.concatenate([end[~self.chains.rings] for end in self.chains.ends])
+        return np.asarray(np.bincount(ends, minlength=len(self.middle)))
 
     @property
     def is_corner(self) -> Bools:
         """(n,) bool, the nodes at which just two chains end: corners, no junctions."""
-        ends = np.concatenate([end[~self.chains.rings] for end in self.chains.ends])
-        return np.asarray(np.bincount(ends, minlength=len(self.middle)) == 2)
+        return np.asarray(self._meeting == 2)
+
+    @cached_property
+    def is_junction(self) -> Bools:
+        """(n,) bool, the nodes inside the image at which more than two chains end."""
+        return np.asarray((self._meeting > 2) & (self.bounds != 0))
 
     @property
     def regions(self) -> tuple[Ints, Ints]:

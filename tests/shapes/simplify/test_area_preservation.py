@@ -64,17 +64,20 @@ def test_chords_on_a_disc_lose_what_theory_says():
 @pytest.mark.parametrize("name", SMOOTH)
 def test_after_some_rounds_the_areas_are_kept(name, spacing, most):
     d = settled(SMOOTH[name], spacing)
-    if name in ("disc", "blob") and spacing < 40:
+    if name in ("disc", "blob"):
         most = min(most, 1e-3)
     assert area_errors(preserved(d)).max() <= most
     assert area_errors(preserved(d, 1)).max() <= max(4 * most, area_errors(d).max() / 5)
 
 
 @pytest.mark.parametrize("spacing", [3.0, 6.0, 12.0])
-def test_on_a_disc_one_round_leaves_the_square_of_the_error(spacing):
-    """Chords lose a share e of the disc; kept that move outwards by half of it win e, and by then turn a little: e^2 / 2 is left."""
+def test_on_a_disc_one_round_leaves_the_cube_of_the_error(spacing):
+    """Chords lose a share e of the disc; vertices that move outwards by half of it win e, and by then turn a little: e^2 / 2 is left.
+
+    All of them then move by what that is of the whole: again the share e of it is left, or less.
+    """
     d = settled(SMOOTH["disc"], spacing)
-    assert area_errors(preserve_areas(d, tolerance=2.0)).max() == pytest.approx(area_errors(d).max() ** 2 / 2, rel=0.1)
+    assert area_errors(preserve_areas(d, tolerance=2.0)).max() < area_errors(d).max() ** 3 / 2
 
 
 @pytest.mark.parametrize("tolerance", [0.1, 0.5, 2.0])
