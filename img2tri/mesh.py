@@ -186,15 +186,15 @@ def load_mesh(path: str | os.PathLike[str]) -> TriangleMesh:
     Parameters
     ----------
     path
-        A file that ends in .stl, .ply, .obj, .off, .glb, .vtp, .vtu, .vtkhdf, .msh, .bdf, .inp, .mesh or .xdmf, with triangles in one plane
-        of constant z.
+        A file that ends in .stl, .ply, .obj, .off, .glb, .3mf, .vtp, .vtu, .vtkhdf, .msh, .bdf, .inp, .mesh or .xdmf, with triangles in
+        one plane of constant z.
 
     Returns
     -------
     TriangleMesh
         With regions, names, the place of the image and its sides, so that `sets` are those that were saved, as far as the format holds
-        them; named sets of edges that other programs made are kept in `edge_sets`. Files of .stl and .off have triangles alone, .ply, .obj
-        and .glb regions too. Quadratic triangles become those of their corners. There is no `report`: its image is not in the file.
+        them; named sets of edges that other programs made are kept in `edge_sets`. Files of .stl and .off have triangles alone, .ply, .obj,
+        .glb and .3mf regions too. Quadratic triangles become those of their corners. There is no `report`: its image is not in the file.
 
     Raises
     ------

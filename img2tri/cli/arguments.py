@@ -153,7 +153,7 @@ def _parser() -> ArgumentParser:
         "meshes",
         nargs="+",
         metavar="MESH",
-        help=".stl .ply .obj .off .glb .vtp .vtu .vtkhdf .msh .bdf .inp .mesh .xdmf, flat or solid; - for stdin",
+        help=".stl .ply .obj .off .glb .3mf .vtp .vtu .vtkhdf .msh .bdf .inp .mesh .xdmf, flat or solid; - for stdin",
     )
     quality.add_argument("--format", metavar="F", help="of a mesh on stdin, such as stl")
     return parser

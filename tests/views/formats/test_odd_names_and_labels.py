@@ -6,10 +6,11 @@ import meshio
 import numpy as np
 import pytest
 import pyvista as pv
+import trimesh
 from views.plates import cells
 
 import img2tri
-from img2tri import ParameterError, TriangleMesh
+from img2tri import FileError, MeshError, ParameterError, TriangleMesh
 from img2tri.views.formats.readers.read_any import read_file
 
 NAMES = {
@@ -18,8 +19,8 @@ NAMES = {
     22: "q<o", -25: "region_4", 2**40: "region_5",
 }  # fmt: skip
 LABELS = [0, -1, -7, 2**31 - 1, 2**31, -(2**31), 2**63 - 1, -(2**63), 2**53 + 1, 5]
-HOLDERS = (".ply", ".obj", ".vtp", ".vtu", ".vtkhdf", ".msh", ".inp", ".bdf", ".xdmf", ".mesh")
-SOLVERS = HOLDERS[3:]
+HOLDERS = (".ply", ".obj", ".3mf", ".vtp", ".vtu", ".vtkhdf", ".msh", ".inp", ".bdf", ".xdmf", ".mesh")
+SOLVERS = HOLDERS[4:]
 
 
 def strip_of(labels, names=None):
@@ -53,6 +54,27 @@ def test_names_of_any_kind_come_back_each_with_its_label_and_sets(tmp_path, suff
     assert places(back)[1] == places(mesh)[1]
     assert back.sets().labels == mesh.sets().labels
     assert {name: len(rows) for name, rows in back.sets().edges.items()} == {name: len(rows) for name, rows in mesh.sets().edges.items()}
+
+
+def test_a_3mf_comes_back_flat_and_solid(tmp_path):
+    mesh = strip_of([3, -7, 2**40], {3: "bone & marrow", -7: "骨"})
+    mesh.save(tmp_path / "a.3mf")
+    back = img2tri.load(tmp_path / "a.3mf")
+    assert places(back) == places(mesh)
+    assert back.names == mesh.names
+    mesh.save(tmp_path / "b.3mf", 2)
+    solid = read_file(tmp_path / "b.3mf")
+    assert solid.names == {3: "bone & marrow", -7: "骨", 2**40: f"region_{2**40}"}
+    a, b, c = (solid.points[solid.cells[:, k]] for k in range(3))
+    volume = {label: (a * np.cross(b, c))[solid.regions == label].sum() / 6 for label in solid.names}
+    assert volume == pytest.approx(dict.fromkeys(solid.names, 2))
+    with pytest.raises(MeshError, match="img2tri quality measures solids"):
+        img2tri.load(tmp_path / "b.3mf")
+    trimesh.creation.box().export(tmp_path / "c.3mf")
+    assert len(read_file(tmp_path / "c.3mf").cells) == 12
+    (tmp_path / "d.3mf").write_bytes((tmp_path / "a.3mf").read_bytes()[:300])
+    with pytest.raises(FileError, match="d.3mf: cannot be read as .3mf"):
+        img2tri.load(tmp_path / "d.3mf")
 
 
 @pytest.mark.parametrize("suffix", [".msh", ".vtu"])

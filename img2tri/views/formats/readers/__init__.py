@@ -6,6 +6,7 @@ known_sets      named sets of edges of a file beyond those that are found anew
 solid_quality             cells in space as a file holds them -> a table of their quality
 file_contents                     what a file holds: the record all readers return, and the labels in names and tables
 read_stl_ply_obj_off_glb  the formats trimesh knows
+read_3mf                  3MF
 read_vtp_vtu              VTP and VTU
 read_vtkhdf               VTKHDF
 read_msh_bdf              MSH of Gmsh, BDF of Nastran

@@ -15,6 +15,7 @@ import numpy as np
 from img2tri.errors import FileError, MeshError
 from img2tri.views.formats.atomic_write import known_suffix
 from img2tri.views.formats.readers.file_contents import Found
+from img2tri.views.formats.readers.read_3mf import parse_3mf
 from img2tri.views.formats.readers.read_inp import parse_inp
 from img2tri.views.formats.readers.read_medit import parse_medit
 from img2tri.views.formats.readers.read_msh_bdf import parse_bdf, parse_msh
@@ -37,6 +38,7 @@ def _of_bytes(parse: Callable[[bytes], Found]) -> Callable[[Path], Found]:
 FILE_READERS: dict[str, Callable[[Path], Found]] = {
     **dict.fromkeys((".stl", ".ply", ".obj", ".off", ".glb"), _surface),
     **dict.fromkeys((".vtp", ".vtu"), _of_bytes(parse_vtp_vtu)),
+    ".3mf": _of_bytes(parse_3mf),
     ".msh": _of_bytes(parse_msh),
     ".bdf": _of_bytes(parse_bdf),
     ".inp": _of_bytes(parse_inp),
@@ -52,7 +54,7 @@ def read_file(path: str | os.PathLike[str]) -> Found:
     Parameters
     ----------
     path
-        A file that ends in .stl, .ply, .obj, .off, .glb, .vtp, .vtu, .msh, .bdf, .inp, .mesh, .xdmf or .vtkhdf.
+        A file that ends in .stl, .ply, .obj, .off, .glb, .3mf, .vtp, .vtu, .msh, .bdf, .inp, .mesh, .xdmf or .vtkhdf.
 
     Raises
     ------
