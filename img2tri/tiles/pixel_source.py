@@ -173,7 +173,7 @@ def _tiff(path: Path) -> Any:
     with tifffile.TiffFile(path) as file:
         tag = file.pages[0].tags.get(GDAL_NODATA)  # type: ignore[union-attr]
         colours = file.pages[0].samplesperpixel > 1  # type: ignore[union-attr]
-    store = tifffile.imread(path, aszarr=True, level=0)
+    store: Any = tifffile.imread(path, aszarr=True, level=0)
     plane = _Plane(zarr.open(store, mode="r"), colours, None if tag is None else str(tag.value).strip("\0 "))
     weakref.finalize(plane, store.close)
     return plane

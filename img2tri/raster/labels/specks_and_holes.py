@@ -169,7 +169,7 @@ def _absorbed(parts: Components, keep: Bools, least: float, connectivity: int) -
         pairs = np.stack([one, other], axis=1)[number[one] == number[other]]
         into = connected(len(area), np.concatenate([pairs, joined(corners, number, connectivity)]))
         count = int(into.max()) + 1
-        area = np.bincount(into, area, count)
+        area = np.bincount(into, area, count).astype(np.int64)  # whole numbers of pixels
         keep = (np.bincount(into, keep, count) > 0) | (area >= least)
         number = _of_groups(number, into, count)
         one, other, corners, group = into[one], into[other], into[corners], into[group]

@@ -184,7 +184,7 @@ def _unsmoothed_ends(s: BoundedChains) -> ChainEnds:
     beside = np.stack([z[chains.first + 1], z[chains.last - 1]], axis=1)
     direction = np.stack([z[chains.first + inner] - beside[:, 0], beside[:, 1] - z[chains.last - inner]], axis=1)
     unit = np.where(direction == 0, 1, direction) / np.maximum(np.abs(direction), 1e-12)
-    return ChainEnds(beside, unit, np.zeros(beside.shape))
+    return ChainEnds(beside, np.asarray(unit, np.complex128), np.zeros(beside.shape))
 
 
 def _blend(shift: Floats, level: Ints, s: BoundedChains) -> Floats:

@@ -75,9 +75,9 @@ def together(mesh: Piece, finished: Piece, lost: Bools, labels: Ints, territory:
     if lost.any():
         seam, beyond_seam = seams_around(old, finished.regions, ~lost, seam, beyond_seam, n)
     outside = territory.outside(z)
-    near = territory.outside(z[new].mean(axis=1)) < margin
+    near = territory.outside(np.asarray(z[new].mean(axis=1), np.complex128)) < margin
     new, codes = new[near], np.searchsorted(labels, mesh.regions[near]) + 1
-    near = (territory.outside(z[old].mean(axis=1)) < 2 * margin) & ~lost
+    near = (territory.outside(np.asarray(z[old].mean(axis=1), np.complex128)) < 2 * margin) & ~lost
     old, old_codes = old[near], np.searchsorted(labels, finished.regions[near]) + 1
     border, owner = Sides.of(old, n).bare()
     true = (outside[border] < margin).all(axis=1)

@@ -131,8 +131,8 @@ def _limits(points: Floats, edges: Ints, reach: float) -> Floats:
     apart = max(2 * reach, float(lengths.mean()))
     number = np.ceil(lengths / apart).astype(np.int64)
     owner, place = runs(number)
-    place = (place + 0.5) / number[owner]
-    samples = a[owner] + place[:, None] * (b - a)[owner]
+    along = (place + 0.5) / number[owner]
+    samples = a[owner] + along[:, None] * (b - a)[owner]
     near = cKDTree(points).sparse_distance_matrix(cKDTree(samples), 2 * reach + apart / 2, output_type="ndarray")
     pairs = np.unique(near["i"] * len(edges) + owner[near["j"]])
     p, e = np.divmod(pairs, len(edges))

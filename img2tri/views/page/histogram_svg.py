@@ -61,7 +61,7 @@ def chart(name: str, title: str, words: str, values: Floats, most: float, unit: 
     """
     shown = np.nan_to_num(values).clip(0, most)
     counts, limits = np.bincount(bins(values, most), minlength=BARS), np.linspace(0, most, BARS + 1)
-    step, tallest = _WIDTH / BARS, (_HEIGHT - 8) / max(counts.max(), 1)
+    step, tallest = _WIDTH / BARS, (_HEIGHT - 8) / max(int(counts.max()), 1)
     bars = "".join(
         f'<rect x="{i * step:.2f}" y="{_HEIGHT - count * tallest:.2f}" width="{step - 0.6:.2f}" height="{count * tallest:.2f}" '
         f'fill="#{shade((i + 0.5) / BARS)}"/><rect class="hit" role="button" tabindex="-1" data-bin="{name}:{i}" x="{i * step:.2f}" y="0" '
