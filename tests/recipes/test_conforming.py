@@ -6,7 +6,7 @@ import numpy as np
 import oracles
 import pytest
 import specimens
-from benchmarks.shapes import gear
+from benchmarks.shapes import gear, leaf
 
 from img2tri import mesh_image
 from img2tri.raster.labels.segmentation import Segmentation
@@ -93,3 +93,9 @@ def test_corners_are_not_taken_for_curves():
     mask = gear(20, 380, 0.3)
     count, least = (len(mesh_image(mask, edge_length=8, **o).triangles) for o in ({}, {"segments_per_turn": 3}))
     assert count < 1.05 * least
+
+
+@pytest.mark.parametrize("mask", [leaf(9, 360, 1.0), leaf(12, 300, 4.0), leaf(16, 440, 2.0), gear(28, 412, 5.0)])
+def test_silhouettes_have_angles_two_degrees_better_than_promised(mask):
+    mesh = mesh_image(mask, edge_length=8)
+    assert oracles.angles(mesh.vertices, mesh.triangles).min() >= 32 - 1e-9

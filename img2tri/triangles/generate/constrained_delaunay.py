@@ -107,7 +107,7 @@ class Refined:
     origin: Ints
 
 
-def ruppert(points: Floats, segments: Ints, left: Ints, right: Ints, min_angle: float, min_edge: float) -> Refined:
+def ruppert(points: Floats, segments: Ints, left: Ints, right: Ints, min_angle: float, min_edge: float, most: int | None = None) -> Refined:
     """Triangulate as `triangulate` does, then add points until every angle is `min_angle` (Ruppert's refinement).
 
     Points are added at circumcentres, and in the middle of segments, which are thereby split. Where two segments meet in
@@ -121,6 +121,8 @@ def ruppert(points: Floats, segments: Ints, left: Ints, right: Ints, min_angle: 
         Degrees. Above 30 or so the refinement needs very many points or does not reach it.
     min_edge : float
         No edge shorter than this is split; smaller values reach the angle in more places, with more triangles.
+    most : int, optional
+        How many points it may add before it stops; None: as many as it is likely to need.
 
     Notes
     -----
@@ -131,7 +133,7 @@ def ruppert(points: Floats, segments: Ints, left: Ints, right: Ints, min_angle: 
     triangulation = insert(points, segments)
     _, regions = _label(triangulation, len(points), segments, left, right)
     outside = set(np.flatnonzero(regions == 0).tolist())
-    budget = 20 * len(points) + 10_000
+    budget = 20 * len(points) + 10_000 if most is None else most
     by_angle = pythoncdt.RefinementCriterion.SMALLEST_ANGLE
     triangulation.refine_triangles(budget, by_angle, math.radians(min_angle), outside, min_edge)
     corners = triangulation.vertices_array()[SUPER:]

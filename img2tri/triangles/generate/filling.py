@@ -30,7 +30,7 @@ from img2tri.triangles.generate.graded_lattice import lengths_near
 from img2tri.triangles.generate.hexagonal_lattice import Lattice
 from img2tri.triangles.generate.interior_sizes import SizeFunction
 from img2tri.triangles.generate.pslg import Pslg
-from img2tri.triangles.generate.ruppert_refinement import refine_locally
+from img2tri.triangles.generate.ruppert_refinement import refine_with_reserve
 from img2tri.triangles.generate.strip import RegionMesh, Strip, finish_strip, lay_strip, relax_strip, with_core
 
 LengthField = Callable[[Floats], Floats]
@@ -216,7 +216,7 @@ def finish(begun: Filling, points: Floats | None = None, *, min_angle: float = 3
         # Refinement may have to split an edge of the core, which cannot be: then again with less of a core, or none.
         for margin in (*MARGINS[1:], begun.lattice.rows, None):
             mesh = finish_strip(strip, relaxed, first)
-            refined = refine_locally(mesh.vertices, mesh.triangles, mesh.codes, strip.constraints, strip.n_outline, min_angle)
+            refined = refine_with_reserve(mesh.vertices, mesh.triangles, mesh.codes, strip.constraints, strip.n_outline, min_angle)
             if refined is not None or margin is None:
                 break
             outlines = replace(begun.pslg, points=np.concatenate([first, begun.pslg.points[len(first) :]]))

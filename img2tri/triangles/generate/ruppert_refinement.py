@@ -28,13 +28,32 @@ PATCH_RINGS = (
     24,
     None,
 )  # how far patches reach around bad triangles, then around split edges of the rim; None: to the end
+RESERVE = 2.0  # degrees over the least angle, which refinement reaches nearly always where it is asked of few triangles
+FEW, SOME_POINTS, POINTS_EACH = 100, 100, 12  # so many of them at most; and the points that may be added for all, and for each
 SHORTEST_EDGE = 0.05  # of the shortest segment in the patch: no edge becomes shorter. A stop only: sharp corners would be refined for ever
 
 
-def refine_locally(
+def refine_with_reserve(
     vertices: Points, triangles: Ints, codes: Ints, constraints: Pslg, n_outline: int, min_angle: float
 ) -> tuple[Points, Ints, Ints] | None:
-    """Refine a mesh where angles are smaller than `min_angle`; its vertices stay, others are added after them.
+    """Refine a mesh as `refine_locally` does, to angles larger than `min_angle` by `RESERVE` if few points do that.
+
+    A degree or two more may take very many points, or may not be reached with any number. So it is tried with a few for each triangle
+    that lacks it.
+    """
+    wanted = min_angle + RESERVE
+    lacking = int(np.count_nonzero(narrower(vertices, triangles, wanted)))
+    if lacking <= FEW:
+        better = refine_locally(vertices, triangles, codes, constraints, n_outline, wanted, SOME_POINTS + POINTS_EACH * lacking)
+        if better is not None and not narrower(better[0], better[1], wanted - 1e-9).any():
+            return better
+    return refine_locally(vertices, triangles, codes, constraints, n_outline, min_angle)
+
+
+def refine_locally(
+    vertices: Points, triangles: Ints, codes: Ints, constraints: Pslg, n_outline: int, min_angle: float, most: int | None = None
+) -> tuple[Points, Ints, Ints] | None:
+    """Refine a mesh where angles are smaller than `min_angle`; its vertices stay, others, `most` of them, are added after them.
 
     Only the first `n_outline` segments of the constraints may be split. None if that is not enough.
     """
@@ -49,7 +68,7 @@ def refine_locally(
         patch = grown
         inside, local = np.unique(triangles[patch], return_inverse=True)
         rim, may_split = _patch_constraints(vertices[inside], inside, local.reshape(-1, 3), codes[patch], constraints, n_outline)
-        made = ruppert(as_rows(rim.points), rim.segments, rim.left, rim.right, min_angle, SHORTEST_EDGE * rim.lengths.min())
+        made = ruppert(as_rows(rim.points), rim.segments, rim.left, rim.right, min_angle, SHORTEST_EDGE * rim.lengths.min(), most)
         split = (np.bincount(made.origin) > 1) & ~may_split
         if not split.any():
             break

@@ -293,13 +293,13 @@ def test_points_slide_as_far_as_they_may_and_triangles_get_better(seed):
 @pytest.mark.parametrize("failures", [1, 2, 3])
 def test_where_refinement_would_have_to_split_the_core_there_is_less_of_it(failures, monkeypatch):
     given = network((wave(220, 100, lobes=3), 1, 0))
-    cores, refine_locally = [], filling.refine_locally
+    cores, refine_locally = [], filling.refine_with_reserve
 
     def reluctant(vertices, triangles, codes, constraints, n_outline, min_angle):
         cores.append(len(constraints.segments) - n_outline)
         return None if len(cores) < failures else refine_locally(vertices, triangles, codes, constraints, n_outline, min_angle)
 
-    monkeypatch.setattr(filling, "refine_locally", reluctant)
+    monkeypatch.setattr(filling, "refine_with_reserve", reluctant)
     mesh = fill(*given, edge_length=3.0)
     check(given, mesh)
     assert cores == sorted(cores, reverse=True)

@@ -8,7 +8,7 @@ import pytest
 
 from img2tri.arrays import as_complex, as_rows
 from img2tri.triangles.generate.pslg import Pslg
-from img2tri.triangles.generate.ruppert_refinement import refine_locally
+from img2tri.triangles.generate.ruppert_refinement import RESERVE, refine_locally, refine_with_reserve
 
 FLAT = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 1.0], [0.0, 1.0]])  # a rectangle of two triangles with angles of 6 degrees
 TRIANGLES = np.array([[0, 1, 2], [0, 2, 3]])
@@ -42,3 +42,19 @@ def test_where_segments_may_be_split_angles_become_large_enough(apart):
     assert len(regions) == len(refined) > len(triangles)
     oracles.check_valid(as_rows(places), refined)
     assert np.bincount(refined.ravel(), minlength=len(places)).all()
+
+
+@pytest.mark.parametrize("min_angle", [20.0, 30.0])
+def test_a_few_points_more_give_better_angles_than_wanted(min_angle):
+    vertices, triangles, codes, constraints = mesh(apart=True)
+    places, refined, _ = refine_with_reserve(vertices, triangles, codes, constraints, len(constraints.segments), min_angle)
+    oracles.check_valid(as_rows(places), refined)
+    assert oracles.angles(as_rows(places), refined).min() >= min_angle + RESERVE - 1e-9
+
+
+def test_where_that_would_take_many_points_the_angle_wanted_is_enough():
+    given = mesh(apart=False)
+    segments = len(given[3].segments)
+    assert oracles.angles(*map(np.asarray, (as_rows((made := refine_with_reserve(*given, segments, 37.0))[0]), made[1]))).min() < 39
+    usual = refine_locally(*given, segments, 37.0)
+    assert np.array_equal(made[1], usual[1])
