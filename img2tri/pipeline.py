@@ -33,7 +33,6 @@ from img2tri.shapes.mirror_symmetry import check_symmetric
 from img2tri.shapes.periodic.side_chains import check_periodic
 from img2tri.shapes.polygons import enclosed_areas
 from img2tri.shapes.trace.dual_edges import pixel_areas, pixels_beside
-from img2tri.tiles.blocks_in_memory import conform_blocks
 from img2tri.types import Frame, Outlines, Picture, Provenance, RecipeMesh
 
 
@@ -101,6 +100,8 @@ def mesh_image(image: Any, *, progress: Callable[[str, float], None] | None = No
         spent = within / 2 if o["smoothing"] == "cotangent" else within
         how: dict[str, Any] = {"corners": o["corners"], "periodic": o["periodic"], "tolerance": spent, **of(FillOptions, o)}
         if o["blocks"]:
+            from img2tri.tiles.blocks_in_memory import conform_blocks
+
             made = conform_blocks(zones, frame, o, outlines.labels, progress=tell)
         elif o["symmetric"]:
             made = conform_symmetric(

@@ -11,14 +11,17 @@ they do not, more are asked for.
 from __future__ import annotations
 
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from img2tri.arrays import Floats, Ints, Points, as_complex, as_rows, cross, runs
 from img2tri.errors import MeshError
 from img2tri.shapes.simplify.clearance import to_segment
 from img2tri.types import Provenance
+
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
 
 SAMPLE_STEP = 0.5  # px between the samples that distances are measured at
 FIRST_ASKED = 3  # samples looked at around a place at first
@@ -48,6 +51,8 @@ class SegmentSet:
 
     @cached_property
     def _tree(self) -> cKDTree:
+        from scipy.spatial import cKDTree
+
         return cKDTree(as_rows(self._samples))
 
     def distance(self, places: Floats) -> Floats:
@@ -80,6 +85,8 @@ def hausdorff(one: SegmentSet, other: SegmentSet) -> tuple[float, Floats]:
 
 def wrong_pixels(plane: Floats, triangles: Ints, number: Ints, curves: SegmentSet, origin: Provenance) -> Floats:
     """Pixel centres in a wrong region, farther than the tolerance from the edge of the mesh."""
+    from scipy.spatial import cKDTree
+
     far = np.flatnonzero(curves.distance(origin.pixels) > (origin.tolerance or 0.0) + 1e-9)
     if not len(far):
         return np.zeros((0, 2))

@@ -9,18 +9,18 @@ those again, the first of them alone, which tells whose fault it was.
 
 from __future__ import annotations
 
-import multiprocessing
 import os
 import signal
 import sys
 from collections.abc import Callable, Iterator
-from concurrent.futures import Future, ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
 from functools import partial
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from img2tri.errors import ParameterError, integer
+
+if TYPE_CHECKING:
+    from concurrent.futures import Future, ProcessPoolExecutor
 
 GRACE = 2.0  # seconds for processes to tidy up
 MOST_WORKERS = 10_000
@@ -88,6 +88,8 @@ class Processes:
 
     def submit(self, function: Callable[..., Any], *given: Any) -> Future[Any]:
         """Have a function called; a pool that is broken is replaced."""
+        from concurrent.futures.process import BrokenProcessPool
+
         try:
             with _ctrl_c_held_back():
                 return self._started().submit(_called, function, *given)
@@ -102,6 +104,8 @@ class Processes:
 
     def result(self, call: Future[Any]) -> Any:
         """Wait for a result."""
+        from concurrent.futures.process import BrokenProcessPool
+
         try:
             return call.result()
         except BrokenProcessPool as broken:
@@ -110,6 +114,8 @@ class Processes:
 
     def holds(self, call: Future[Any], /) -> bool:
         """Keep the calls that came to an end before the pool broke."""
+        from concurrent.futures.process import BrokenProcessPool
+
         return call.done() and not call.cancelled() and not isinstance(call.exception(), BrokenProcessPool)
 
     def close(self, *, at_once: bool) -> None:
@@ -129,12 +135,16 @@ class Processes:
 
     def _started(self) -> ProcessPoolExecutor:
         if self.pool is None:
+            from concurrent.futures import ProcessPoolExecutor
+
             self.pool = ProcessPoolExecutor(self.count, _context(), initializer=_prepare)
         return self.pool
 
 
 def _context() -> Any:
     """Return how processes are started."""
+    import multiprocessing
+
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")

@@ -218,7 +218,6 @@ def _filled(coarse: Simplification, pairs: PeriodicPairs, sizes: Sizes, demands:
     Return vertices, triangles and regions, or why there are none; the outlines, opposite sides divided alike; and places (k, 2) where
     these are at fault: at the corners of triangles with too small an angle, or where no mesh could be made.
     """
-    from img2tri.recipes.poisson_interior import scattered
     from img2tri.triangles.generate.constrained_delaunay import PslgError
     from img2tri.triangles.smallest_tangents import narrower
 
@@ -228,6 +227,8 @@ def _filled(coarse: Simplification, pairs: PeriodicPairs, sizes: Sizes, demands:
             if demands.interior == "lattice":
                 mesh = _with_lattice(coarse, chains, sizes, demands)
             else:
+                from img2tri.recipes.poisson_interior import scattered
+
                 mesh = scattered(chains, sizes.longest, sizes.field, min_angle=demands.min_angle, seed=demands.seed)
             filled, chains = chains, pairs.divided_alike(chains, mesh[0])
             if chains is filled:

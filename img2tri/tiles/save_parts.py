@@ -13,12 +13,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
 from img2tri.arrays import Floats, Ints, runs
 from img2tri.errors import FileError
+from img2tri.views.formats.xml_text import xml_quoted
 
 FORMATS = (".zarr", ".pvtu", ".vtkhdf")
 
@@ -120,7 +120,7 @@ def _pvtu(path: Path, folder: Path, parts: Iterable[Part], report: dict[str, Any
         writer.EncodeAppendedDataOff()
         if not writer.Write():
             raise OSError(0, f"VTK could not write {part.name}.vtu")
-        sources.append(f"    <Piece Source={quoteattr(f'{folder.name}/{part.name}.vtu')}/>")
+        sources.append(f"    <Piece Source={xml_quoted(f'{folder.name}/{part.name}.vtu')}/>")
     (beside / "report.json").write_text(json.dumps(report, indent=2, default=str), encoding="utf-8")
     head = (
         '<?xml version="1.0"?>\n<VTKFile type="PUnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt32">\n'

@@ -66,6 +66,8 @@ class SizeFunction:
     @cached_property
     def _classes(self) -> list[tuple[cKDTree, Floats]]:
         """Sources with lengths within a factor of two, and these; the shortest first."""
+        if not len(self.sources):
+            return []
         from scipy.spatial import cKDTree
 
         level: Ints = np.floor(np.log2(self.largest / self.lengths)).astype(np.int64)

@@ -19,7 +19,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
-import igl
 import numpy as np
 
 from img2tri.arrays import Floats, Ints
@@ -38,16 +37,22 @@ class Geometry:
     @cached_property
     def lengths(self) -> Floats:
         """(m, 3) lengths of the edges."""
+        import igl
+
         return igl.edge_lengths(self.vertices, self.triangles)  # type: ignore[no-any-return]
 
     @cached_property
     def areas(self) -> Floats:
         """(m,) areas, negative for triangles turned over."""
+        import igl
+
         return igl.doublearea(self.vertices, self.triangles) / 2  # type: ignore[no-any-return]
 
     @cached_property
     def angles(self) -> Floats:
         """(m, 3) angles in degrees, those of triangles without area by their limits."""
+        import igl
+
         angles: Floats = np.degrees(igl.internal_angles(self.vertices, self.triangles))
         flat = np.flatnonzero((self.lengths == 0).any(axis=1))
         # Two corners coincide: both angles at them tend to 90 degrees, if the two come together from any side alike.

@@ -21,7 +21,6 @@ import os
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
-from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -31,6 +30,7 @@ from img2tri.errors import MeshError
 from img2tri.views.figures.region_colours import as_hex, region_colours
 from img2tri.views.formats.atomic_write import known_suffix, store, writable
 from img2tri.views.formats.solvers.plain_text import ascii_letters
+from img2tri.views.formats.xml_text import xml_escaped, xml_quoted
 from img2tri.views.objects.body_per_region import unique_names
 from img2tri.views.objects.flat_or_extruded import plane_mesh
 
@@ -176,8 +176,9 @@ def _svg_text(drawing: _Drawing) -> str:
         return "M" + "L".join(f"{number(a)} {number(b)}" for a, b in zip(x.tolist(), y.tolist(), strict=True))
 
     paths = [
-        f'<path id="region_{region.label}" data-label="{region.label}" data-name={quoteattr(region.name)} fill="{colour}" '
-        f'd="{"".join(moves(ring[:-1]) + "Z" for rings in region.parts for ring in rings)}"><title>{escape(region.name)}</title></path>'
+        f'<path id="region_{region.label}" data-label="{region.label}" data-name={xml_quoted(region.name)} fill="{colour}" '
+        f'd="{"".join(moves(ring[:-1]) + "Z" for rings in region.parts for ring in rings)}">'
+        f"<title>{xml_escaped(region.name)}</title></path>"
         for region, colour in zip(drawing.regions, as_hex(drawing.colours), strict=True)
     ]
     thin = (right - left + top - bottom) / 4000
@@ -186,7 +187,7 @@ def _svg_text(drawing: _Drawing) -> str:
         width=number(right - left),
         height=number(top - bottom),
         unit=drawing.texts["units"] if drawing.texts.get("units") in _SVG_UNITS else "",
-        notes=escape(json.dumps(drawing.texts)),
+        notes=xml_escaped(json.dumps(drawing.texts)),
         thin=number(2 * thin),
         paths="\n".join(paths),
         mesh=f'\n<path id="mesh" fill="none" stroke="#2b2b2b" stroke-width="{number(thin)}" d="{mesh}"/>' if mesh else "",

@@ -14,7 +14,6 @@ import io
 import zipfile
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
-from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +21,7 @@ from numpy.typing import NDArray
 from img2tri.arrays import Floats
 from img2tri.views.figures.region_colours import region_colours
 from img2tri.views.formats.number_rows import rows
+from img2tri.views.formats.xml_text import xml_escaped, xml_quoted
 from img2tri.views.objects.body_per_region import Body
 from img2tri.views.objects.flat_or_extruded import Surface
 
@@ -86,7 +86,7 @@ def _colour_group(number: int, colours: Iterable[Sequence[int]]) -> str:
 
 def _object(number: int, group: int, kind: str, name: str, points: Floats, triangle: str, faces: NDArray[np.integer[Any]]) -> str:
     return _OBJECT.format(
-        number=number, kind=kind, name=quoteattr(name), group=group,
+        number=number, kind=kind, name=xml_quoted(name), group=group,
         vertices="\n".join(rows('<vertex x="{!r}" y="{!r}" z="{!r}"/>', points)),
         triangles="\n".join(rows(triangle, faces)),
     )  # fmt: skip
@@ -98,7 +98,7 @@ def _package(resources: list[str], objects: int, texts: Mapping[str, str], label
     last = len(resources)
     model = _MODEL.format(
         unit=_UNITS_OF_3MF.get(texts.get("units", "mm"), "millimeter"),
-        notes="\n".join(f'<metadata name="img2tri:{_xml_name(name)}">{escape(text)}</metadata>' for name, text in notes.items()),
+        notes="\n".join(f'<metadata name="img2tri:{_xml_name(name)}">{xml_escaped(text)}</metadata>' for name, text in notes.items()),
         resources="\n".join(resources),
         items="".join(f'<item objectid="{number}"/>' for number in range(last - objects + 1, last + 1)),
     )

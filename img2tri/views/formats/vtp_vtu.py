@@ -11,13 +11,13 @@ import base64
 import zlib
 from collections.abc import Mapping
 from typing import Any
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 from numpy.typing import NDArray
 
 from img2tri.arrays import Floats, Ints
 from img2tri.errors import FileError
+from img2tri.views.formats.xml_text import xml_quoted
 from img2tri.views.objects.flat_or_extruded import Surface
 from img2tri.views.objects.to_pyvista import to_pyvista
 
@@ -105,5 +105,5 @@ def _array(name: str, values: NDArray[Any], *, tuples: bool = False) -> str:
     columns = f' NumberOfComponents="{array.shape[1]}"' if array.ndim > 1 else ""
     count = f' NumberOfTuples="{len(array)}"' if tuples else ""
     return (
-        f'<DataArray type="{_KINDS[array.dtype.str[1:]]}" Name={quoteattr(name)}{columns}{count} format="binary">\n{text}\n</DataArray>\n'
+        f'<DataArray type="{_KINDS[array.dtype.str[1:]]}" Name={xml_quoted(name)}{columns}{count} format="binary">\n{text}\n</DataArray>\n'
     )

@@ -9,7 +9,6 @@ import re
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
-from xml.sax.saxutils import unescape
 
 import numpy as np
 from numpy.typing import NDArray
@@ -76,6 +75,8 @@ def _facets(path: Path, points: int) -> dict[str, Ints]:
 
 def _grid(path: Path) -> tuple[ElementTree.Element, dict[str, int]]:
     """Return the only grid of a file, and the numbers by their names, as img2tri and meshio write them."""
+    from xml.sax.saxutils import unescape
+
     text = path.read_text(encoding="utf-8")
     maps = re.findall(r'<map key=("[^"]*"|\'[^\']*\') dim="\d">(\d+)</map>', text)
     names = {unescape(key[1:-1], {"&quot;": '"'}): int(number) for key, number in maps}

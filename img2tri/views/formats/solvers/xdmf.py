@@ -21,7 +21,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any
-from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +29,7 @@ from img2tri.arrays import Floats, Ints
 from img2tri.views.formats.number_rows import real_rows, whole_rows
 from img2tri.views.formats.solvers.plain_text import label_table
 from img2tri.views.formats.vtp_vtu import xml_comments
+from img2tri.views.formats.xml_text import xml_escaped, xml_quoted
 from img2tri.views.objects.sets.numbers_in_files import Z_MAX, Z_MIN
 from img2tri.views.objects.solver_cells import Cells
 
@@ -113,10 +113,10 @@ def _pieces(made: Cells, names: list[str], tags: Ints) -> Ints:
 def _grid_file(
     notes: str, time: str, points: Floats, kind: str, cells: Ints, attributes: list[str], names: Mapping[str, int], dimension: int
 ) -> bytes:
-    maps = "".join(f'<map key={quoteattr(key)} dim="{dimension}">{value}</map>' for key, value in names.items())
+    maps = "".join(f'<map key={xml_quoted(key)} dim="{dimension}">{value}</map>' for key, value in names.items())
     return _GRID.format(
         notes=notes, time=time, space="XYZ"[: points.shape[1]], points=_item(points), kind=kind, count=len(cells), nodes=cells.shape[1],
-        cells=_item(cells), attributes="".join(attributes), named=len(names), names=maps.replace("]]>", escape("]]>")),
+        cells=_item(cells), attributes="".join(attributes), named=len(names), names=maps.replace("]]>", xml_escaped("]]>")),
     ).encode()  # fmt: skip
 
 
@@ -124,7 +124,7 @@ def _attribute(name: str, values: NDArray[Any], center: str = "Cell") -> str:
     """Write values of cells or nodes: one each, or as a vector, a tensor, or a matrix of as many as there are."""
     array = values.reshape(len(values), -1)
     kind = {1: "Scalar", 3: "Vector", 9: "Tensor"}.get(array.shape[1], "Matrix")
-    return f'<Attribute Name={quoteattr(name)} AttributeType="{kind}" Center="{center}">\n{_item(array)}\n</Attribute>\n'
+    return f'<Attribute Name={xml_quoted(name)} AttributeType="{kind}" Center="{center}">\n{_item(array)}\n</Attribute>\n'
 
 
 def _item(array: NDArray[Any]) -> str:
