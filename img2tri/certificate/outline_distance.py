@@ -3,9 +3,9 @@
 In: segments, the boundary and interface edges of a mesh or the outlines of an image, in the plane of the frame, in pixels. Out: distances
 and places. Distances are measured at samples `SAMPLE_STEP` apart, to the segments themselves.
 
-The nearest segment is found by a search tree over samples of the segments. A segment at distance d has a sample within
-sqrt(d^2 + half the step^2): if the samples found reach farther than that of the nearest segment among theirs, no other one is nearer. Where
-they do not, more are asked for.
+The nearest segment is looked for among those with a sample nearby. A segment at distance d has a sample within
+sqrt(d^2 + half the step^2): if all samples were looked at that are not farther than that from the nearest segment found, no other one is
+nearer. Cells beside the place say it nearly always; for the rest a search tree is asked, for more and more samples.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from img2tri.arrays import Floats, Ints, Points, as_complex, as_rows, cross, runs
+from img2tri.cells import cells, pairs_across
 from img2tri.errors import MeshError
 from img2tri.shapes.simplify.clearance import to_segment
 from img2tri.types import Provenance
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from scipy.spatial import cKDTree
 
 SAMPLE_STEP = 0.5  # px between the samples that distances are measured at
+NEARBY = 0.75  # px, the width of cells in which segments are looked for at first
 FIRST_ASKED = 3  # samples looked at around a place at first
 MOST_SQUARES = 4000  # to a side of the grid in which triangles near pixels are looked for
 
@@ -57,7 +59,9 @@ class SegmentSet:
 
     def distance(self, places: Floats) -> Floats:
         """Distance of places (k, 2) to the nearest segment."""
-        z, result, open_ = as_complex(places), np.zeros(len(places)), np.arange(len(places))
+        z = as_complex(places)
+        result = self._distance_nearby(z)
+        open_ = np.flatnonzero(result**2 + (SAMPLE_STEP / 2) ** 2 > NEARBY**2)
         asked = FIRST_ASKED
         while len(open_):
             asked = min(asked, len(self._samples))
@@ -69,6 +73,21 @@ class SegmentSet:
                 break
             open_ = open_[reach[:, -1] ** 2 < nearest**2 + (SAMPLE_STEP / 2) ** 2 + 1e-9]
             asked *= 4
+        return result
+
+    def _distance_nearby(self, z: Points) -> Floats:
+        """Distance of places (k,) to the nearest segment with a sample in their cell or one beside it; infinite if there is none."""
+        cell, above = cells(np.concatenate([z, self._samples]), NEARBY)
+        at, cell = np.split(cell, [len(z)])
+        # Of the samples of a segment one in each cell is enough.
+        some = np.flatnonzero((np.diff(cell, prepend=-1) != 0) | (np.diff(self._owner, prepend=-1) != 0))
+        some = some[np.argsort(cell[some])]
+        place, owner = pairs_across(np.arange(len(z)), at, self._owner[some], cell[some], above)
+        result = np.full(len(z), np.inf)
+        if len(place):
+            # Those of one place stand side by side, in each of three rows of cells.
+            first = np.flatnonzero(np.diff(place, prepend=-1))
+            np.minimum.at(result, place[first], np.minimum.reduceat(to_segment(z[place], self._a[owner], self._b[owner]), first))
         return result
 
 
