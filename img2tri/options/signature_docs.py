@@ -14,7 +14,7 @@ from img2tri.options.all_options import OPTIONS, TYPES
 F = TypeVar("F", bound=Callable[..., Any])
 
 DOC_WIDTH = 120
-PLACE = "{options}"
+PLACE = r"\{options\}"
 
 
 def with_options(function: F) -> F:
@@ -32,9 +32,9 @@ def with_options(function: F) -> F:
         for name, option in OPTIONS.items()
     ]
     function.__signature__ = own.replace(parameters=[*first, *entries, *last])  # type: ignore[attr-defined]
-    indent = " " * 4
-    if function.__doc__ is not None:  # as under python -OO
-        function.__doc__ = function.__doc__.replace(indent + PLACE, textwrap.indent(parameters_section(), indent, bool))
+    if function.__doc__ is not None:  # as under python -OO; from Python 3.13 on docstrings are not indented
+        words = parameters_section()
+        function.__doc__ = re.sub(rf"^( *){PLACE}$", lambda found: textwrap.indent(words, found[1], bool), function.__doc__, flags=re.M)
     return function
 
 
