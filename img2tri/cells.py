@@ -20,7 +20,7 @@ def cells(places: Points, width: float) -> tuple[Ints, int]:
     Examples
     --------
     >>> cells(np.array([0.5 + 0.5j, 1.5 + 0.5j, 0.5 + 1.5j]), 1.0)
-    (array([4, 5, 7]), 3)
+    (array([5, 6, 9]), 4)
     """
     column, row = (np.floor((part - part.min()) / width).astype(np.int64) + 1 for part in (places.real, places.imag))
     above = int(column.max()) + 2
@@ -37,29 +37,24 @@ def in_cells_beside(cell: Ints, above: int, chosen: Bools) -> Bools:
     return marked[cell]
 
 
-def pairs_beside(own: Ints, cell: Ints, above: int) -> Ints:
-    """Pair (2, p) all items that are in one cell or in two beside each other, each pair once; the cells (k,) of the items (k,) rise.
+def pairs_beside(own: Ints, cell: Ints, above: int) -> tuple[Ints, Ints]:
+    """Pair all items that are in one cell or in two beside each other, each pair once; the cells (k,) of the items (k,) rise.
 
     Examples
     --------
-    >>> pairs_beside(np.array([7, 8, 9]), np.array([5, 6, 9]), 4).tolist()
-    [[7, 7, 8], [8, 9, 9]]
+    >>> pairs_beside(np.array([7, 8, 9]), np.array([5, 6, 9]), 4)
+    (array([7, 7, 8]), array([8, 9, 9]))
     """
-    # Each pair is seen from the first of the two: the rest of its own cell, the one on the right, three in the row above.
-    later = np.arange(1, len(cell) + 1)
-    below = _stretch(own, own, later, np.searchsorted(cell, cell + 1, side="right"))
-    return np.concatenate([below, _in_cells(own, own, cell, cell + above - 1, cell + above + 1)], axis=1)
+    # Each pair is seen from the first of the two: the rest of its own cell and the one on the right, then three in the row above.
+    first = np.concatenate([np.arange(1, len(cell) + 1), cell.searchsorted(cell + (above - 1))])
+    last = cell.searchsorted(np.concatenate([cell + 1, cell + (above + 1)]), side="right")
+    run, place = runs(last - first)
+    return own[run % len(own)], own[first[run] + place]
 
 
-def pairs_across(own: Ints, at: Ints, others: Ints, cell: Ints, above: int) -> Ints:
-    """Pair (2, p) items in the cells `at` with the others in these and beside them, whose cells rise."""
-    return np.concatenate([_in_cells(own, others, cell, row - 1, row + 1) for row in (at - above, at, at + above)], axis=1)
-
-
-def _in_cells(own: Ints, others: Ints, cell: Ints, first: Ints, last: Ints) -> Ints:
-    return _stretch(own, others, np.searchsorted(cell, first), np.searchsorted(cell, last, side="right"))
-
-
-def _stretch(own: Ints, others: Ints, begin: Ints, end: Ints) -> Ints:
-    run, place = runs(end - begin)
-    return np.stack([own[run], others[begin[run] + place]])
+def pairs_across(own: Ints, at: Ints, others: Ints, cell: Ints, above: int) -> tuple[Ints, Ints]:
+    """Pair items in the cells `at` with the others in these and beside them, whose cells rise; item by item in each of three rows."""
+    rows = np.concatenate([at - above, at, at + above])
+    first = cell.searchsorted(rows - 1)
+    run, place = runs(cell.searchsorted(rows + 1, side="right") - first)
+    return own[run % len(own)], others[first[run] + place]

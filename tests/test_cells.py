@@ -27,11 +27,11 @@ def test_every_pair_nearer_than_a_cell_is_found_once(width):
     cell, above = cells(places, width)
     order = np.argsort(cell)
     near = np.abs(places[:, None] - places) <= width
-    pairs = [tuple(sorted(pair)) for pair in pairs_beside(order, cell[order], above).T.tolist()]
+    pairs = [tuple(sorted(pair)) for pair in np.transpose(pairs_beside(order, cell[order], above)).tolist()]
     assert len(set(pairs)) == len(pairs)
     assert set(zip(*(part.tolist() for part in np.nonzero(np.triu(near, 1))), strict=True)) <= set(pairs)
     own, others = np.arange(100), order[order >= 100]
-    pairs = list(map(tuple, pairs_across(own, cell[own], others, cell[others], above).T.tolist()))
+    pairs = list(map(tuple, np.transpose(pairs_across(own, cell[own], others, cell[others], above)).tolist()))
     assert len(set(pairs)) == len(pairs)
     i, j = np.nonzero(near[:100, 100:])
     assert set(zip(i.tolist(), (j + 100).tolist(), strict=True)) <= set(pairs)

@@ -75,7 +75,7 @@ def _near(middle: Points, half: Floats, fresh: Bools) -> tuple[Ints, Ints]:
     apart.
     """
     size = np.ceil(np.log2(half) / 2)  # classes of a ratio of 4
-    found = [np.zeros((2, 0), np.int64)]
+    found = []
     for each in np.unique(size).tolist():
         cell, above = cells(middle, 2 * float(half[size == each].max()))
         chosen = size <= each
@@ -88,7 +88,7 @@ def _near(middle: Points, half: Floats, fresh: Bools) -> tuple[Ints, Ints]:
         found.append(pairs_beside(own, cell[own], above))
         if len(smaller):
             found.append(pairs_across(own, cell[own], smaller, cell[smaller], above))
-    i, j = np.concatenate(found, axis=1)
+    i, j = (np.concatenate(part) for part in zip(*found, strict=True))
     return i, j
 
 

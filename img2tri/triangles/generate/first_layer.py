@@ -49,7 +49,7 @@ def _neighbours(points: Points, wanted: Floats) -> tuple[Ints, Ints]:
     Searching within the largest length would find far too many pairs where lengths are small. So lengths go in classes which
     overlap: the wanted lengths of two neighbours differ by less than the overlap.
     """
-    found = [np.zeros((2, 0), np.int64)]
+    found = [(np.zeros(0, np.int64), np.zeros(0, np.int64))]
     top, least = float(wanted.max(initial=0.0)), float(wanted.min(initial=np.inf))
     halvings = max(0, int(np.ceil(np.log2(top / (0.4 * least))))) if top > 0 else 0
     for longest in top / 2.0 ** np.arange(halvings):
@@ -57,6 +57,6 @@ def _neighbours(points: Points, wanted: Floats) -> tuple[Ints, Ints]:
         if len(members):
             cell, above = cells(points[members], CROWDED * longest)
             order = np.argsort(cell)
-            found.append(np.sort(pairs_beside(members[order], cell[order], above), axis=0))
-    lower, higher = np.concatenate(found, axis=1)
-    return lower, higher
+            found.append(pairs_beside(members[order], cell[order], above))
+    i, j = (np.concatenate(part) for part in zip(*found, strict=True))
+    return np.minimum(i, j), np.maximum(i, j)
