@@ -59,7 +59,7 @@ def conform_blocks(
 def _joined(plan: Plan, store: PiecesInMemory) -> tuple[Points, Ints, Ints, int]:
     """Return the vertices (complex), triangles and labels of all pieces, each vertex once, and the number of edges on seams."""
     pieces = [load_piece(store, plan, cell)[0] for cell in plan.cells()]
-    seams: list[Seam] = [seam_of(piece) for piece in pieces]
+    seams: list[Seam] = [seam_of(piece, plan, cell) for piece, cell in zip(pieces, plan.cells(), strict=True)]
     numbers, total = numbered_vertices(seams)
     vertices = np.zeros(total, np.complex128)
     triangles = []

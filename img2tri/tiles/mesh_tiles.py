@@ -139,7 +139,7 @@ def mesh_tiles(
         facts.update(_done(client, "mesh", _block, those, (image, plan, store), share))
 
     tell("seams", 0.9)
-    seams = [seam_of(load_piece(store, plan, cell)[0]) for cell in cells]
+    seams = [seam_of(load_piece(store, plan, cell)[0], plan, cell) for cell in cells]
     numbers_of, total = numbered_vertices(seams)
     starts = np.cumsum([0, *(seam.triangles for seam in seams)])
 

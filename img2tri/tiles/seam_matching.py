@@ -14,7 +14,10 @@ import numpy as np
 
 from img2tri.arrays import Ints, Points
 from img2tri.errors import MeshError
-from img2tri.tiles.seams.piece_seams import Piece
+from img2tri.tiles.block_plan import Cell, Plan
+from img2tri.tiles.seams.piece_seams import Piece, Sides
+
+NEAR = 4  # margins: how far within a block those of others may reach
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,7 +29,7 @@ class Seam:
     count, triangles
         How many vertices and triangles the piece has.
     numbers
-        (k,) int64, its vertices on seams.
+        (k,) int64, its vertices on seams, and those that others may have though no edge is shared.
     places
         (k,) complex, where they are.
     edges
@@ -40,10 +43,14 @@ class Seam:
     edges: Ints
 
 
-def seam_of(piece: Piece) -> Seam:
-    """Return what of a piece others share."""
-    numbers, edges = np.unique(piece.seam, return_inverse=True)
-    return Seam(len(piece.vertices), len(piece.triangles), numbers, piece.vertices[numbers], edges.reshape(-1, 2))
+def seam_of(piece: Piece, plan: Plan, cell: Cell) -> Seam:
+    """Return what of the piece of a block others share: its seam, and corners of outlines near its border, which may be all they have."""
+    near = np.flatnonzero(plan.territory(cell, NEAR).outside(piece.vertices) > -NEAR * plan.margin)
+    beside = np.zeros(len(piece.vertices), bool)
+    beside[near] = True
+    bare, _ = Sides.of(piece.triangles[beside[piece.triangles].any(axis=1)], len(piece.vertices)).bare()
+    numbers = np.unique(np.concatenate([piece.seam.ravel(), bare[beside[bare]]]))
+    return Seam(len(piece.vertices), len(piece.triangles), numbers, piece.vertices[numbers], np.searchsorted(numbers, piece.seam))
 
 
 def numbered_vertices(seams: Sequence[Seam]) -> tuple[list[tuple[int, Ints]], int]:

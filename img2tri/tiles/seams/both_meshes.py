@@ -12,6 +12,8 @@ import shapely
 from img2tri.arrays import Bools, Floats, Ints, Points, as_rows
 from img2tri.tiles.seams.piece_seams import Piece, Sides, seams_around
 
+SAME = 1e-6  # px: vertices nearer to each other are one; windows differ by 1e-10
+
 
 @dataclass(frozen=True)
 class Territory:
@@ -46,6 +48,7 @@ class Both:
     new: Ints
     new_codes: Ints
     old: Ints
+    old_codes: Ints
     border: Ints
     own: Ints
     beyond: Ints
@@ -65,9 +68,19 @@ class Both:
         return shapely.STRtree(shapely.polygons(as_rows(self.z[self.old.ravel()]).reshape(-1, 3, 2))) if len(self.old) else None
 
 
+def _on_finished(new: Points, finished: Points) -> Points:
+    """Put vertices that are a finished one but for rounding, as windows add in another order, where that is."""
+    from scipy.spatial import cKDTree
+
+    if not len(new) or not len(finished):
+        return new
+    distance, nearest = cKDTree(as_rows(finished)).query(as_rows(new), distance_upper_bound=SAME)
+    return np.where(distance < SAME, finished[np.minimum(nearest, len(finished) - 1)], new)
+
+
 def together(mesh: Piece, finished: Piece, lost: Bools, labels: Ints, territory: Territory, cut: Ints) -> Both:
     """Bring both into the same numbers; only what is near counts, and of the finished triangles those not given up."""
-    z, number = np.unique(np.concatenate([mesh.vertices, finished.vertices]), return_inverse=True)
+    z, number = np.unique(np.concatenate([_on_finished(mesh.vertices, finished.vertices), finished.vertices]), return_inverse=True)
     n, margin = len(z), territory.margin
     new, old = number[mesh.triangles], number[finished.triangles + len(mesh.vertices)]
     seam, beyond_seam = number[finished.seam + len(mesh.vertices)], finished.beyond
@@ -90,4 +103,4 @@ def together(mesh: Piece, finished: Piece, lost: Bools, labels: Ints, territory:
         goes_on = keys[at] == wanted
         beyond[goes_on] = np.searchsorted(labels, beyond_seam[at[goes_on]]) + 1
     fresh = (beyond > 0) & ~np.isin(wanted, before)
-    return Both(z, outside, new, codes, old, border, old_codes[owner], beyond, fresh, number[cut])
+    return Both(z, outside, new, codes, old, old_codes, border, old_codes[owner], beyond, fresh, number[cut])

@@ -15,6 +15,7 @@ from img2tri.tiles.seams.block_core import core_put_back, core_set_aside
 from img2tri.tiles.seams.both_meshes import Both, Territory, together
 from img2tri.tiles.seams.gap_attempts import EATEN, MOST_ATTEMPTS, SEGMENT_LENGTHS, WIDTHS, Attempt
 from img2tri.tiles.seams.gap_triangulation import Gap, GapWalls, gap_filled, improved, longest_sides
+from img2tri.tiles.seams.joint_check import check_joint
 from img2tri.tiles.seams.outline_splices import Ways, splice
 from img2tri.tiles.seams.piece_seams import Piece, SeamError, Sides, evened, find_stubs, taken
 from img2tri.triangles.smallest_tangents import smallest_angles
@@ -108,7 +109,9 @@ def _merged(
     lonely = ~_met(both.border[both.fresh], triangles[takes], len(z))
     if lonely.any():
         raise SeamError("what was given up is not filled", z[both.border[both.fresh][lonely, 0]])
-    return taken(z, triangles, labels[code - 1], takes, met, labels[both.own[goes_on] - 1])
+    piece = taken(z, triangles, labels[code - 1], takes, met, labels[both.own[goes_on] - 1])
+    check_joint(piece, both, labels, MET * territory.margin)
+    return piece
 
 
 def _check_outlines(
