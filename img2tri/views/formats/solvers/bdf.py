@@ -32,8 +32,9 @@ def bdf(made: Cells) -> dict[str, bytes]:
     called = distinct_names([*made.names.values(), *made.sides], unquoted)
     lines = [f"$ {MARK}", *comment_lines(made.texts | label_table(made, called), "$ "), "CEND", "BEGIN BULK", *_grid_cards(made.points)]
     cells = made.cells[:, NASTRAN_ORDERS.get(made.kind, slice(None))] + 1
+    ids = made.ids
     for label, mine in made.members().items():
-        number = made.ids[label]
+        number = ids[label]
         lines.append(f'$HMNAME COMP {number:>19}"{called[made.names[label]]}"')
         table = np.column_stack([mine + 1, np.full(len(mine), number), cells[mine]])
         lines += map(_template(_CARDS[made.kind], table.shape[1], number).__mod__, map(tuple, table.tolist()))

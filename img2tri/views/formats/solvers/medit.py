@@ -34,7 +34,8 @@ def medit(made: Cells) -> dict[str, bytes]:
         raise ParameterError(f"cells: expected triangles or tetrahedra of first order for .mesh, found {made.kind}; give {wanted}")
     split = set(made.part_of.values())
     sets = [name for name in made.sides if name not in split]
-    numbers = {name: made.ids[label] for label, name in made.names.items()} | made.tags
+    ids = made.ids
+    numbers = {name: ids[label] for label, name in made.names.items()} | made.tags
     height = {} if made.solid or not made.points[0, 2] else {"z": repr(float(made.points[0, 2]))}
     called = distinct_names(numbers, lambda name: " ".join(name.split()))
     lines = ["MeshVersionFormatted 2", f"# {MARK}", *comment_lines(made.texts | height | label_table(made, called), "# ")]
@@ -43,7 +44,7 @@ def medit(made: Cells) -> dict[str, bytes]:
     parts = ["\n".join(lines), f"\nDimension {points.shape[1]}\nVertices\n{len(points)}\n", real_rows(points, after=" 0")]
     facets = [np.column_stack([made.facets(name) + 1, np.full(len(made.sides[name]), made.tags[name])]) for name in sets]
     labels, which = np.unique(made.regions, return_inverse=True)
-    cells = np.column_stack([made.cells + 1, np.array([made.ids[label] for label in labels.tolist()])[which]])
+    cells = np.column_stack([made.cells + 1, np.array([ids[label] for label in labels.tolist()])[which]])
     for word, rows in zip(("Triangles", "Tetrahedra") if made.solid else ("Edges", "Triangles"), (facets, [cells]), strict=True):
         parts += [f"{word}\n{sum(map(len, rows))}\n", *map(whole_rows, rows)]
     return {"": "".join([*parts, "End\n"]).encode()}

@@ -69,7 +69,8 @@ def msh(made: Cells, *, version: str = "4.1") -> dict[str, bytes]:
     inside, members = 3 if made.solid else 2, made.members()
     called = distinct_names([*made.names.values(), *made.sides], unquoted)
     names = [(inside - 1, made.tags[name], called[name]) for name in made.sides if version == "4.1" or name not in made.part_of]
-    names += [(inside, made.ids[label], called[name]) for label, name in made.names.items()]
+    ids = made.ids
+    names += [(inside, ids[label], called[name]) for label, name in made.names.items()]
     entities = _entities(made, members)
     lines = ["$MeshFormat", f"{version} 0 8", "$EndMeshFormat"]
     pieces = {called[name]: made.tags[name] for name in made.part_of} if version == "2.2" else {}
@@ -87,7 +88,7 @@ def msh(made: Cells, *, version: str = "4.1") -> dict[str, bytes]:
 
 def _entities(made: Cells, members: dict[int, Ints]) -> list[_Entity]:
     """Return the entities, facets first."""
-    inside, entities = 3 if made.solid else 2, []
+    inside, entities, ids = 3 if made.solid else 2, list[_Entity](), made.ids
     split = set(made.part_of.values())
     for name in made.sides:
         if name in split:
@@ -98,7 +99,7 @@ def _entities(made: Cells, members: dict[int, Ints]) -> list[_Entity]:
         entities.append(_Entity(inside - 1, made.tags[name], groups, kind, elements))
     cells = made.cells[:, GMSH_ORDERS.get(made.kind, slice(None))] + 1
     for label, mine in members.items():
-        number = made.ids[label]
+        number = ids[label]
         entities.append(_Entity(inside, number, (number,), GMSH_TYPES[made.kind], cells[mine]))
     return entities
 

@@ -78,9 +78,10 @@ def xdmf(made: Cells, *, timed: bool = False) -> dict[str, bytes]:
     points = made.points if made.solid or made.points[:, 2].any() else made.points[:, :2]
     inside = 3 if made.solid else 2
     head = (xml_comments(made.texts | label_table(made)), '<Time Value="0"/>\n' if timed else "", points)
-    ids = {name: made.ids[label] for label, name in made.names.items()}
+    own = made.ids
+    ids = {name: own[label] for label, name in made.names.items()}
     labels, which = np.unique(made.regions, return_inverse=True)
-    numbers = np.array([made.ids[label] for label in labels.tolist()])[which]
+    numbers = np.array([own[label] for label in labels.tolist()])[which]
     values = [_attribute("region", numbers), *(_attribute(name, v) for name, v in made.cell_data.items())]
     values += [_attribute(name, v, "Node") for name, v in made.point_data.items()]
     files = {"": _grid_file(*head, TOPOLOGIES[made.kind], made.cells, values, ids, inside)}
