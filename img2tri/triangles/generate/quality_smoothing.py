@@ -30,10 +30,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csc_array
 
 from img2tri.arrays import Bools, Floats, Ints, Points, blocks
 from img2tri.errors import bounded
+from img2tri.triangles.generate.corner_sums import CornerSums
 from img2tri.triangles.smallest_tangents import smallest_tangents
 
 TURN = np.exp(2j * np.pi / 3)
@@ -118,14 +118,11 @@ class _Smoother:
     """What smoothing has to know of triangles and of the vertices that may move."""
 
     def __init__(self, triangles: Ints, free: Bools) -> None:
-        n, m = len(free), len(triangles)
+        n = len(free)
         self._triangles, self._corners = triangles, _columns(triangles)
-        # One row per vertex, one column per triangle, with an entry for each of its corners.
-        entries, ends = triangles.ravel().astype(np.int32), np.arange(0, 3 * m + 1, 3, dtype=np.int32)
-        self._sum_of_moves = csc_array((np.tile(-DEFECT.conj(), m), entries, ends), shape=(n, m))
-        self._sum_of_weights = csc_array((np.ones(3 * m), entries, ends), shape=(n, m))
+        self._moves, self._weights = CornerSums(triangles, n, -DEFECT.conj()), CornerSums(triangles, n, np.ones(3))
         used = np.zeros(n, bool)
-        used[entries] = True
+        used[triangles] = True
         self._where = np.flatnonzero(free & used)
 
     def smoothed(
@@ -143,7 +140,7 @@ class _Smoother:
                         weight *= weight
                     weights[block] = weight
                     np.multiply(weight, defect, out=weighted[block])
-                moves, total = np.asarray(self._sum_of_moves @ weighted), np.asarray(self._sum_of_weights @ weights)
+                moves, total = self._moves.of(weighted), self._weights.of(weights)
                 moved[where] += damping * moves[where] / total[where]
                 if lines is not None:
                     step = damping * moves[lines.at] / total[lines.at]
