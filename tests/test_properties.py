@@ -222,7 +222,6 @@ def test_areas_are_not_kept_at_the_expense_of_the_tolerance(image, options):
     assert all(": area " in line for line in mesh_image(image, **options).report.warnings)
 
 
-@pytest.mark.xfail(strict=True, reason="where pixels are flat, a junction can be sharper than the least angle")
 def test_flat_pixels_have_the_angles_of_others():
     labels = specimens.drawn(".11", "1..", "...")
     assert mesh_image(labels, labels=True, background=None, spacing=(1, 0.25)).report.kept

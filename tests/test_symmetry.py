@@ -82,7 +82,7 @@ def test_outlines_of_noise_are_turned_with_the_image(density):
     """Turned only: the corner of a tip that is its own mirror image has to be given to one of the two pixels there."""
     rng = np.random.default_rng(0)
     for _ in range(8):
-        assert turned_points_differ_by((rng.random((13, 16)) < density).astype(int), turns=4) < 1e-5
+        assert turned_points_differ_by((rng.random((13, 16)) < density).astype(int), turns=4) < 1e-7
 
 
 @pytest.mark.parametrize("name", ["blob", "ring", "rings", "polygons", "comb"])

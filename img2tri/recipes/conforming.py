@@ -30,6 +30,7 @@ from img2tri.shapes.sizes.outline_sizes import by_chords, by_curvature, by_thick
 from img2tri.shapes.sizes.user_size_field import EdgeLength, SizeField, size_field
 from img2tri.shapes.trace.crack_edges import find_crack_edges
 from img2tri.shapes.trace.dual_edges import DualEdges, pixel_areas
+from img2tri.shapes.trace.turning_points import with_turning_points
 from img2tri.types import Frame, Outlines, RecipeMesh
 
 if TYPE_CHECKING:
@@ -168,6 +169,7 @@ def conform(
     """Mesh all regions of an image, given its dense outlines; lengths in px."""
     from img2tri.triangles.generate.constrained_delaunay import PslgError
 
+    outlines, dual_edges = with_turning_points(outlines, dual_edges, on_frame=periodic is None)
     tell = progress or (lambda *_: None)
     count = len(outlines.left)
     tell("spacing" if count < CONFETTI else f"spacing {count:,} outlines; min_area would drop specks", 0.3)

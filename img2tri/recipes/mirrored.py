@@ -15,7 +15,7 @@ from img2tri.shapes.sizes.user_size_field import SizeField
 from img2tri.shapes.trace.dual_edges import DualEdges
 from img2tri.types import Frame, Outlines, RecipeMesh
 
-ROUNDING = 1e-5  # px: by so much the outlines of a symmetric image may differ from their mirror image
+ROUNDING = 1e-7  # px: by so much the outlines of a symmetric image may differ from their mirror image
 ON_AXIS = 1e-9  # px: vertices nearer to an axis are on it
 SAME_LENGTH = 0.05  # relative: what lengths of a field may differ by from those on the other side
 

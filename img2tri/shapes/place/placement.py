@@ -45,7 +45,8 @@ def place_outlines(
         # Steps of pixels are alike in both directions only where pixels are square: there outlines are smoothed, and stretched then.
         placed, squares = place_outlines(crack_edges, Frame(frame.shape, upward=frame.upward), gray=gray, level=level, corners=corners)
         stretched = lay_out(squares.crack_edges, frame)
-        return stretched.outlines(as_complex(placed.points * (np.array(frame.spacing) / frame.pixel))), stretched
+        points = as_complex(placed.points * (np.array(frame.spacing) / frame.pixel))
+        return stretched.outlines(_opened_stretched(points, stretched)), stretched
     dual_edges = lay_out(crack_edges, frame)
     if not len(dual_edges.crossed):
         return dual_edges.outlines(dual_edges.middle), dual_edges
@@ -76,6 +77,31 @@ def place_outlines(
     wanted = _wanted_areas(bounded, dual_edges, slack)
     shift = exchange_areas(bounded, shift, wanted, *dual_edges.regions, pixel_areas(dual_edges))
     return dual_edges.outlines(bounded.points + shift * dual_edges.vector), dual_edges
+
+
+def _opened_stretched(points: Points, dual_edges: DualEdges) -> Points:
+    """Return the points of outlines that were smoothed where pixels are square, sharp wedges opened as they are where these are not.
+
+    Also at the frame of the image, where the end of a chain slides no farther from the crossing beside it than that is away.
+    """
+    vector, at, chains = dual_edges.vector, dual_edges.chains.indices, dual_edges.chains
+    if not len(at):
+        return points
+    bound = np.full(len(vector), BOUND)
+    s = BoundedChains(dual_edges.middle, vector, -bound, bound, bound, chains)
+    wanted, points = swept_areas(points, s), points.copy()
+    for entry, step in ((chains.first, 1), (chains.last, -1)):
+        node, beside = at[entry], at[entry + step]
+        ends = ~chains.rings & (dual_edges.bounds[node] == 0) & (points[node] != dual_edges.middle[node]) & (vector[beside] != 0)
+        node, beside = node[ends], beside[ends]
+        along = vector[beside] / np.abs(vector[beside])
+        off = (points[node] - points[beside]) * along.conj()
+        points[node] = points[beside] + (np.clip(off.real, -np.abs(off.imag), np.abs(off.imag)) + 1j * off.imag) * along
+    shift = np.where(vector != 0, ((points - dual_edges.middle) / np.where(vector != 0, vector, 1)).real, 0.0)
+    s = replace(s, points=np.where(vector != 0, dual_edges.middle, points))
+    s, shift = open_wedges(s, shift, dual_edges.blunt_middle, dual_edges.is_junction, dual_edges.bounds)
+    shift = exchange_areas(s, shift, wanted, *dual_edges.regions, pixel_areas(dual_edges))
+    return s.points + shift * vector
 
 
 def _bounded(dual_edges: DualEdges, points: Points, shift: Floats, slack: Floats) -> BoundedChains:

@@ -25,7 +25,7 @@ from img2tri.shapes.place.padded_chains import PaddedChains, convolve, gaussian
 
 WIDTH = 0.4775  # of the scale: waves three scales long are left with half of their height
 ARC_BLUR = 2.2  # places: the Gaussian that takes the steps of pixels out of the length of a line
-LEAST_STEP = 0.2  # px, the least way counted from place to place: with shorter ones the equations are badly conditioned
+LEAST_STEP = 0.5  # px, the least way counted from place to place: with shorter ones the equations are badly conditioned
 NODE_WEIGHT = 0.01  # of a node, relative to a crossing: too little to matter, enough that rounding does not either
 PADDING = 11  # places of padding that chains need: 3 for the third derivative, the rest for the Gaussian
 

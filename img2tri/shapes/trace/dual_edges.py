@@ -84,7 +84,9 @@ class DualEdges:
         at, k = self.chains.indices, len(self.crossed)
         passes = np.searchsorted(np.sort(self.crack_edges.tail), self.crack_edges.head[self.crossed][:, None] + [0, 1])
         twice = np.append(np.diff(passes, axis=1)[:, 0] == 2, np.zeros(len(self.middle) - k, bool))
-        here = np.flatnonzero(twice[at[:-1]] & (at[1:] < k) & (np.diff(self.chains.chain) == 0))
+        # Of the points of one crack edge the last one is beside the corner.
+        edge = np.append(self.crossed, np.full(len(self.middle) - k, -1))[at]
+        here = np.flatnonzero(twice[at[:-1]] & (at[1:] < k) & (np.diff(self.chains.chain) == 0) & (np.diff(edge) != 0))
         return at[here], at[here + 1]
 
     @cached_property
@@ -100,10 +102,11 @@ class DualEdges:
                               x
         """
         at, z, (one, other) = self.chains.indices, self.middle, self.beside_touching
-        turn = np.sign(cross(self.corner_after[one] - z[one], self.corner_after[other] - z[other]))
-        # Each outline gets back the eighth that it cuts off at a corner, by the same shift of the crossings before and after it; a
+        corner = self.corner_after[one]
+        cut = cross(corner - z[one], z[other] - corner) / 2
+        # Each outline gets back what it cuts off at a corner, by the same shift of the crossings before and after it; a
         # crossing between two such corners takes the mean of both.
-        eighth, moved = turn / 8 * self.pixel.real * self.pixel.imag, np.unique(np.concatenate([one, other]))
+        moved = np.unique(np.concatenate([one, other]))
         first, second = np.searchsorted(moved, one), np.searchsorted(moved, other)
         pair = np.concatenate([first, second])
         corners = np.bincount(pair, minlength=len(moved))
@@ -119,7 +122,7 @@ class DualEdges:
             there, back = (z[i] + shift[i] / 2 * self.vector[i] for i in (ahead, behind))
             width = cross(self.vector[moved], (there - back) / 2) / corners
             swept = width[first] + width[second]
-            step = np.divide(eighth, swept, out=np.zeros(len(one)), where=np.abs(swept) > LEAST_WIDTH)
+            step = np.divide(cut, swept, out=np.zeros(len(one)), where=np.abs(swept) > LEAST_WIDTH)
             shift[moved] = (np.bincount(pair, np.tile(step, 2), len(moved)) / corners).clip(-MOST_SHIFT, MOST_SHIFT)
         return np.asarray(z + shift * self.vector)
 
