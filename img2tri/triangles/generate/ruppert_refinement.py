@@ -29,24 +29,24 @@ PATCH_RINGS = (
     None,
 )  # how far patches reach around bad triangles, then around split edges of the rim; None: to the end
 RESERVE = 2.0  # degrees over the least angle, which refinement reaches nearly always where it is asked of few triangles
-FEW, SOME_POINTS, POINTS_EACH = 100, 100, 12  # so many of them at most; and the points that may be added for all, and for each
+FEW, SOME_POINTS, POINTS_EACH = 24, 100, 12  # so many of them at most; and the points that may be added for all, and for each
 SHORTEST_EDGE = 0.05  # of the shortest segment in the patch: no edge becomes shorter. A stop only: sharp corners would be refined for ever
 
 
 def refine_with_reserve(
     vertices: Points, triangles: Ints, codes: Ints, constraints: Pslg, n_outline: int, min_angle: float
 ) -> tuple[Points, Ints, Ints] | None:
-    """Refine a mesh as `refine_locally` does, to angles larger than `min_angle` by `RESERVE` if few points do that.
+    """Refine a mesh as `refine_locally` does, to angles larger than `min_angle` by `RESERVE`, or half of it, if few points do that.
 
     A degree or two more may take very many points, or may not be reached with any number. So it is tried with a few for each triangle
     that lacks it.
     """
-    wanted = min_angle + RESERVE
-    lacking = int(np.count_nonzero(narrower(vertices, triangles, wanted)))
-    if lacking <= FEW:
-        better = refine_locally(vertices, triangles, codes, constraints, n_outline, wanted, SOME_POINTS + POINTS_EACH * lacking)
-        if better is not None and not narrower(better[0], better[1], wanted - 1e-9).any():
-            return better
+    for wanted in (min_angle + RESERVE, min_angle + RESERVE / 2):
+        lacking = int(np.count_nonzero(narrower(vertices, triangles, wanted)))
+        if lacking <= FEW:
+            better = refine_locally(vertices, triangles, codes, constraints, n_outline, wanted, SOME_POINTS + POINTS_EACH * lacking)
+            if better is not None and not narrower(better[0], better[1], wanted - 1e-9).any():
+                return better
     return refine_locally(vertices, triangles, codes, constraints, n_outline, min_angle)
 
 
