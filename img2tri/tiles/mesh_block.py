@@ -75,7 +75,8 @@ def _fitting(plan: Plan, zones: WindowRegions, store: PieceStore, cell: Cell) ->
             if distance > GROSS + 2 * within:
                 raise SeamError(f"an edge of the mesh is {distance:.3g} px off the outlines of the image")
         except SeamError as error:
-            problem = error
+            problem = SeamError(str(error), error.at)  # without its traceback, which would hold this window while the next is meshed
+            del window, mesh, outlines, off, parts, finished
             continue
         lost: Lost = {}
         first = 0
