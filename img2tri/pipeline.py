@@ -21,8 +21,8 @@ from img2tri.paper.defaults import GRID_STEP, PAPER_SMOOTHING, PAPER_THRESHOLD
 from img2tri.raster.in_memory.image_hash import image_hash
 from img2tri.raster.labels.cropping import crop
 from img2tri.raster.labels.early_warnings import early_warnings
-from img2tri.raster.labels.label_numbers import colour_names, label_colours
 from img2tri.raster.labels.otsu_threshold import Level
+from img2tri.raster.labels.rgb_to_labels import colour_names, label_colours
 from img2tri.raster.labels.segmentation import Segmentation, segment, without_specks
 from img2tri.raster.metadata.wanted_width import as_wide_as
 from img2tri.raster.reading import read

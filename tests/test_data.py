@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from img2tri.raster.labels.colours_to_gray import to_gray
-from img2tri.raster.labels.label_numbers import distinct, label_map
 from img2tri.raster.labels.otsu_threshold import binarize
+from img2tri.raster.labels.rgb_to_labels import distinct, label_map
 from img2tri.raster.reading import read
 
 DATA = Path(__file__).parents[1] / "data"

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from img2tri.errors import ImageError
 from img2tri.raster.labels.colours_to_gray import to_gray
 from img2tri.raster.labels.label_map_detection import flat_values
-from img2tri.raster.labels.label_numbers import label_map
 from img2tri.raster.labels.otsu_threshold import binarize
+from img2tri.raster.labels.rgb_to_labels import label_map
 from img2tri.types import Picture
 from img2tri.views.page.html_page import thinned
 from img2tri.views.page.packing import placed

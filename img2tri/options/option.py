@@ -132,14 +132,14 @@ def names_by_label(_name: str, value: Any) -> dict[int, str]:
 
 def one_label(name: str, value: Any) -> int:
     """Check for a number that fits 64 bits."""
-    from img2tri.raster.labels.label_numbers import label
+    from img2tri.raster.labels.rgb_to_labels import label
 
     return label(name, value)
 
 
 def one_label_or_more(name: str, value: Any) -> list[int]:
     """Check for a label, or several."""
-    from img2tri.raster.labels.label_numbers import picked
+    from img2tri.raster.labels.rgb_to_labels import picked
 
     return picked(value, name) if isinstance(value, Iterable) else [one_label(name, value)]
 
@@ -158,7 +158,7 @@ def one_level_or_more(name: str, value: Any) -> Any:
 
 def all_or_some(_name: str, value: Any) -> bool | list[int]:
     """Check for True or False, or labels, of which a list is made: an iterator can be read once."""
-    from img2tri.raster.labels.label_numbers import picked
+    from img2tri.raster.labels.rgb_to_labels import picked
 
     return value if isinstance(value, bool) else picked(value)
 

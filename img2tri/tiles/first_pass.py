@@ -27,7 +27,7 @@ from img2tri.raster.labels.otsu_threshold import otsu_class
 from img2tri.raster.labels.segmentation import check_thresholdable
 from img2tri.tiles.block_plan import Cell, Plan, planned, refuse_by_blocks
 from img2tri.tiles.pixel_source import PixelSource, digest
-from img2tri.tiles.window_regions import label_numbers
+from img2tri.tiles.window_regions import rgb_to_labels
 from img2tri.types import Frame
 
 REFUSED = {
@@ -96,7 +96,7 @@ def _labels_there(values: NDArray[Any], missing: Bools | None, o: dict[str, Any]
     found: dict[str, Any] = {"hues": values.ndim == 3 and bool((values != values[..., :1]).any())}
     # Colours that are gray ones in this block are numbers of colours if the whole image has others.
     for hues in (False, True) if values.ndim == 3 else (False,):
-        numbers = label_numbers(values, hues=hues)
+        numbers = rgb_to_labels(values, hues=hues)
         meshed = np.isin(numbers, o["labels"]) if o["labels"] is not True else numbers != o["background"]
         meshed = np.broadcast_to(meshed, numbers.shape)
         found["meshed as colours" if hues else "meshed"] = int((meshed if missing is None else meshed & ~missing).sum())

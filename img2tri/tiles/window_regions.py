@@ -45,7 +45,7 @@ def segmentation(values: NDArray[Any], missing: Bools | None, plan: Plan) -> Seg
     """Find the regions of pixels, those being in none that are not there."""
     o = plan.options
     if o["labels"]:
-        numbers, background = label_numbers(values, hues=plan.hues), o["background"]
+        numbers, background = rgb_to_labels(values, hues=plan.hues), o["background"]
         meshed = np.ones((1, 1), bool) if o["labels"] is True else np.isin(numbers, o["labels"])
         meshed = meshed if missing is None else meshed & ~missing
         if not meshed.all():
@@ -62,7 +62,7 @@ def segmentation(values: NDArray[Any], missing: Bools | None, plan: Plan) -> Seg
     return Segmentation(mask, 0, None, gray if plan.gray else None, plan.place)
 
 
-def label_numbers(values: NDArray[Any], *, hues: bool) -> NDArray[Any]:
+def rgb_to_labels(values: NDArray[Any], *, hues: bool) -> NDArray[Any]:
     """Return the labels of pixels; `hues`: as numbers 0xRRGGBB, as the image has other colours than gray ones."""
     if values.ndim == 3 and hues:
         red, green, blue = (values[..., channel].astype(np.int64) for channel in range(3))

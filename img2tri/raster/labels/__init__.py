@@ -8,7 +8,7 @@ otsu_threshold        gray values -> a mask: a given level, the middle of two va
 colour_quantization   the option `colors`: a picture with blurred edges -> the nearest of a few flat colours, and the mixes that place edges
 flat_colours          for the former: which colours an image is made of, and which of them a pixel is, or is mixed of
 label_map_detection   whether values look like a label map, which is not to be thresholded by mistake
-label_numbers         the option `labels`: each integer, palette entry or RGB colour -> one number; which of them is background
+rgb_to_labels         the option `labels`: each integer, palette entry or RGB colour -> one number; which of them is background
 absorbed_labels       thin separators: the pixels of some labels given to their nearest neighbours
 cropping              the part of a picture within a box
 connected_components  the pieces of each region that hang together, and how they touch

@@ -1,6 +1,6 @@
 """A picture and the colours wanted of it -> a label map, and the mixes that place the edges between colours.
 
-A colour's label is the one `label_numbers` would give it: ``0xRRGGBB``, or the gray value of a gray image. Gray values that are no whole
+A colour's label is the one `rgb_to_labels` would give it: ``0xRRGGBB``, or the gray value of a gray image. Gray values that are no whole
 numbers are numbered from 0, the darkest.
 """
 
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from img2tri.arrays import Bools, Floats, Ints
 from img2tri.errors import ImageError, ParameterError
 from img2tri.raster.labels.flat_colours import assigned, find_colours, value_range
-from img2tri.raster.labels.label_numbers import LabelMap
+from img2tri.raster.labels.rgb_to_labels import LabelMap
 from img2tri.types import ColourMix
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from img2tri.errors import ConfettiWarning, ConnectivityWarning, Img2triWarning, SizeWarning
 from img2tri.raster.labels.connected_components import find_components
-from img2tri.raster.labels.label_numbers import distinct
+from img2tri.raster.labels.rgb_to_labels import distinct
 from img2tri.raster.labels.segmentation import Segmentation
 
 USUALLY_ASKED = 2000  # triangles: what the default edge length aims at

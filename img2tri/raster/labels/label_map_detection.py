@@ -28,8 +28,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from img2tri.arrays import Bools, Ints
-from img2tri.raster.labels.label_numbers import distinct, label_map
 from img2tri.raster.labels.otsu_threshold import two_valued
+from img2tri.raster.labels.rgb_to_labels import distinct, label_map
 
 MOST_MIXED = 0.1  # of the boundary's pixels
 LEAST_EQUAL = 0.5  # of neighbours in a row: less than that are no patches

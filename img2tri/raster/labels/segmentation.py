@@ -17,8 +17,8 @@ from img2tri.raster.labels.absorbed_labels import absorb_labels, thin_separators
 from img2tri.raster.labels.colour_quantization import label_by_colours
 from img2tri.raster.labels.colours_to_gray import alpha_is_the_picture, to_gray
 from img2tri.raster.labels.label_map_detection import flat_values
-from img2tri.raster.labels.label_numbers import LabelMap, label_map
 from img2tri.raster.labels.otsu_threshold import Level, binarize, two_valued
+from img2tri.raster.labels.rgb_to_labels import LabelMap, label_map
 from img2tri.raster.labels.specks_and_holes import Removed, clean
 from img2tri.raster.labels.transparency import alpha_channel, half_opaque, says_what_is_there, transparent, without_hidden
 from img2tri.raster.metadata.nodata import either

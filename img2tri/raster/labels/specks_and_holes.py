@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from img2tri.arrays import Bools, Ints
 from img2tri.errors import ParameterError, finite, shown
 from img2tri.raster.labels.connected_components import Components, connected, find_components, joined
-from img2tri.raster.labels.label_numbers import LabelMap
+from img2tri.raster.labels.rgb_to_labels import LabelMap
 
 LISTED = 100  # components listed in the report at most
 AREA_ROUNDING = 1e-9  # limits come from lengths in world units

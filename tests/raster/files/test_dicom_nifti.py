@@ -15,8 +15,8 @@ from PIL import Image
 
 from img2tri.errors import FileError, ImageError, Img2triError, ParameterError
 from img2tri.raster.labels.colours_to_gray import to_gray
-from img2tri.raster.labels.label_numbers import label_map
 from img2tri.raster.labels.otsu_threshold import binarize
+from img2tri.raster.labels.rgb_to_labels import label_map
 from img2tri.raster.reading import read
 
 RNG = np.random.default_rng(7)

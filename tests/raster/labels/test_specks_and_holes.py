@@ -12,7 +12,7 @@ from specimens import drawn, polycrystal, rings, spiral
 
 from img2tri.errors import ParameterError
 from img2tri.raster.labels.connected_components import connected, find_components
-from img2tri.raster.labels.label_numbers import LabelMap
+from img2tri.raster.labels.rgb_to_labels import LabelMap
 from img2tri.raster.labels.specks_and_holes import LISTED, clean
 
 MAPS = arrays.arrays(np.int64, st.tuples(st.integers(1, 7), st.integers(1, 7)), elements=st.integers(0, 3))

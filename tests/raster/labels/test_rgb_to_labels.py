@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
 from img2tri.errors import ImageError, ParameterError
-from img2tri.raster.labels.label_numbers import distinct, label_map
+from img2tri.raster.labels.rgb_to_labels import distinct, label_map
 
 RNG = np.random.default_rng(5)
 INTEGERS = [np.uint8, np.int8, np.uint16, np.int16, np.uint32, np.int32, np.uint64, np.int64]
