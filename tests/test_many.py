@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 import warnings
+from multiprocessing.forkserver import _forkserver
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +24,7 @@ from img2tri import mesh_image
 from img2tri.cli import main, printing
 from img2tri.cli import run_jobs as pool
 from img2tri.cli.job import Job
-from img2tri.many.local_workers import local_workers
+from img2tri.many.local_workers import _context, local_workers
 
 IMAGES = [specimens.disc(30 + k, 10.0 + k / 2).astype(bool) for k in range(4)]
 CASES = [(image, {"recipe": "conforming"}) for image in IMAGES] + [(image, {"recipe": "unstructured", "threshold": 0}) for image in IMAGES]
@@ -125,6 +126,9 @@ def hooked(tmp_path, monkeypatch):
     folder.mkdir()
     (folder / "sitecustomize.py").write_text(HOOK)
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(folder), *filter(None, sys.path)]))
+    _forkserver._stop()  # the next one hears of the hook
+    yield
+    _forkserver._stop()
 
 
 @pytest.fixture
@@ -248,7 +252,7 @@ def test_as_many_workers_as_the_system_allows(images, monkeypatch, capsys):
     def refuse(_):
         raise BlockingIOError(11, "Resource temporarily unavailable")
 
-    monkeypatch.setattr(multiprocessing.context.SpawnProcess, "start", refuse)
+    monkeypatch.setattr(_context().Process, "start", refuse)
     assert main(["mesh", *images("a.png", "b.png"), "--out-dir", "out", "--workers", "2"]) == 2
     assert "--workers: expected no more than the system allows" in capsys.readouterr().err
     assert not Path("out").exists()

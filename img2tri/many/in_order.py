@@ -74,12 +74,14 @@ def in_order(
 
 
 def _alone(function: Callable[[Thing], Answer], thing: Thing, workers: Workers, lost: Callable[[Thing], Answer]) -> Answer:
-    """Call a function once more for one thing."""
-    try:
-        result: Answer = workers.result(workers.submit(_batch, function, [thing]))[1][0]
-    except WorkerLostError:
-        result = lost(thing)
-    return result
+    """Call a function for one thing that was lost, perhaps by the fault of another: once more, and again if it takes its worker with it."""
+    for _ in range(2):
+        try:
+            result: Answer = workers.result(workers.submit(_batch, function, [thing]))[1][0]
+        except WorkerLostError:
+            continue
+        return result
+    return lost(thing)
 
 
 def _batch(function: Callable[[Thing], Answer], things: list[Thing]) -> tuple[float, list[Answer]]:

@@ -49,6 +49,7 @@ ARRIVE = {
     "min_angle": (["--min-angle", "28.5"], 28.5),
     "tolerance": (["--tolerance", "0.25px"], "0.25px"),
     "keep_area": (["--no-keep-area"], False),
+    "blocks": (["--blocks"], True),
     "periodic": (["--periodic", "xy"], "xy"),
     "symmetric": (["--symmetric", "xy"], "xy"),
     "interior": (["--interior", "poisson"], "poisson"),
@@ -930,7 +931,7 @@ def test_view_report_from_stdin_to_stdout(disc, tmp_path, monkeypatch, capsys):
         (["-"], "--format: expected with a mesh on stdin, and with nothing else, found none"),
         (["a.stl", "--format", "stl"], "--format: expected with a mesh on stdin, and with nothing else, found stl"),
         (["-", "-", "--format", "stl"], "-: expected once, as stdin is read once, found 2 times"),
-        (["-", "--format", "dwg"], "-: expected a name that ends in .bdf"),
+        (["-", "--format", "dwg"], "-: expected a name that ends in .3mf, .bdf"),
         (["-", "--format", "ply"], "-: cannot be read as .ply"),
     ],
 )
