@@ -23,6 +23,7 @@ from img2tri.tiles.window_regions import WindowRegions
 from img2tri.triangles.tools.topology import curve_edges
 from img2tri.types import Frame, Outlines
 
+AT_ONCE = 10_000  # edges whose distances are measured at once, which bounds the memory of that
 GROSS = 1.0  # px beside twice the tolerance: what no outline of the mesh is off those of the image
 MARGIN_SCALES = (1, 2, 4)  # of the margin: where pieces do not fit, more is looked at and replaced
 
@@ -137,11 +138,14 @@ def _measure(outlines: tuple[Points, Outlines] | None) -> Callable[[Points, Ints
     dense = SegmentSet(as_rows(outlines[0]), outlines[1].segments[0])
 
     def off(z: Points, edges: Ints) -> Floats:
-        a, b = z[edges].T
+        found = [few_off(*z[edges[first : first + AT_ONCE]].T) for first in range(0, len(edges), AT_ONCE)]
+        return np.concatenate(found) if found else np.zeros(0)
+
+    def few_off(a: Points, b: Points) -> Floats:
         count = np.maximum(np.ceil(np.abs(b - a) / SAMPLE_STEP).astype(np.int64), 1) + 1
         which, place = runs(count)
         distance = dense.distance(as_rows(a[which] + (place / (count - 1)[which]) * (b - a)[which]))
-        return np.maximum.reduceat(distance, np.cumsum(count) - count) if len(edges) else np.zeros(0)
+        return np.maximum.reduceat(distance, np.cumsum(count) - count)
 
     return off
 
