@@ -22,7 +22,7 @@ from img2tri.errors import ParameterError
 from img2tri.options.all_options import OPTIONS
 from img2tri.recipes.conforming import USUAL_TRIANGLES
 from img2tri.tiles.seams.both_meshes import Territory
-from img2tri.tiles.seams.merge_pieces import TAKEN
+from img2tri.tiles.seams.join_blocks import TAKEN
 from img2tri.types import Frame
 
 BLOCK_SIDE = 2048  # px, the least side of a block

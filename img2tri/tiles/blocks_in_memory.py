@@ -17,7 +17,7 @@ from img2tri.raster.labels.segmentation import Segmentation
 from img2tri.tiles.block_plan import Plan, planned, refuse_by_blocks
 from img2tri.tiles.mesh_block import mesh_block
 from img2tri.tiles.piece_files import PiecesInMemory, load_piece
-from img2tri.tiles.seam_matching import Seam, global_numbers, numbered_vertices, seam_of
+from img2tri.tiles.vertex_numbers import Seam, global_numbers, numbered_vertices, seam_of
 from img2tri.tiles.window_regions import cut_out
 from img2tri.types import Frame, RecipeMesh
 

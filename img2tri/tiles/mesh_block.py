@@ -17,7 +17,7 @@ from img2tri.recipes.conforming import conform, trace_outlines, wanted_sizes
 from img2tri.tiles.block_plan import SMOOTHED, Cell, Plan, colour
 from img2tri.tiles.piece_files import Lost, PieceStore, load_piece
 from img2tri.tiles.seams.both_meshes import Territory
-from img2tri.tiles.seams.merge_pieces import merge
+from img2tri.tiles.seams.join_blocks import merge
 from img2tri.tiles.seams.piece_seams import Piece, SeamError, join_pieces
 from img2tri.tiles.window_regions import WindowRegions
 from img2tri.triangles.tools.topology import curve_edges

@@ -1,8 +1,8 @@
 """mesh_tiles: an image larger than memory -> a mesh in parts, block by block, on one process or a Dask cluster.
 
     survey    what holds for the whole: level, default edge length, a hash of the pixels          first_pass
-    mesh      each block in its window, fitted to its neighbours', colour by colour               mesh_block, merge_pieces
-    check     every seam edge has its partner; numbers of vertices                                seam_matching
+    mesh      each block in its window, fitted to its neighbours', colour by colour               mesh_block, join_blocks
+    check     every seam edge has its partner; numbers of vertices                                vertex_numbers
     save      parts, one after the other                                                          save_parts
 
 Pieces are kept beside the output while the work is under way. A second run goes on where the first ended.
@@ -31,8 +31,8 @@ from img2tri.tiles.mesh_block import mesh_block
 from img2tri.tiles.piece_files import PieceFolder, PieceStore, load_piece, write
 from img2tri.tiles.pixel_source import PixelSource, open_source
 from img2tri.tiles.save_parts import FORMATS, Part, save_parts
-from img2tri.tiles.seam_matching import global_numbers, numbered_vertices, seam_of
 from img2tri.tiles.seams.piece_seams import Piece, Sides, join_pieces
+from img2tri.tiles.vertex_numbers import global_numbers, numbered_vertices, seam_of
 from img2tri.tiles.window_regions import read_regions
 from img2tri.triangles.smallest_tangents import smallest_angles
 

@@ -1,7 +1,7 @@
 """A new mesh fitted to finished pieces: with no vertex hanging and no triangle twice.
 
 piece_seams        the triangles of one block, and its seam: the edges where other blocks go on
-merge_pieces       `merge`: where the new mesh and finished pieces agree it goes on, else there is a gap to fill
+join_blocks       `merge`: where the new mesh and finished pieces agree it goes on, else there is a gap to fill
 block_core         what of a new mesh is too far from others to be looked at
 both_meshes        both in the same numbers, and the territory of a block
 joint_check        vertices that are doubled, regions that touch themselves where pieces meet
