@@ -13,7 +13,7 @@ from img2tri.shapes.place.constrained_smoothing import AT_BOUND, BoundedChains, 
 from img2tri.shapes.region_pressures import region_pressures
 
 SAME_AREA = 1e-12  # of the area of a region: what it may lack
-EXCHANGES = 10  # two or three do
+EXCHANGES = 30  # a few do, but where chains come to their bounds one after the other
 MOST_EXCHANGED = 0.1  # of a dual edge, in each round
 
 
