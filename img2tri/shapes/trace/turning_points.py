@@ -53,7 +53,7 @@ def with_turning_points(outlines: Outlines, dual_edges: DualEdges, *, on_frame: 
     whose[main], middle[main], place[main] = at, dual_edges.middle[at], z[at]
     for new, own, other, way in ((first, np.flatnonzero(before), -1, -1.0), (last, np.flatnonzero(after), 1, 1.0)):
         point, beside = at[own], at[own + other]
-        along = way * half[point] / np.abs(half[point])
+        along: Points = np.asarray(way * half[point] / np.abs(half[point]), np.complex128)
         whose[new], middle[new] = point, dual_edges.middle[point] + way * half[point] - small / 2 * along
         place[new] = _on_segment(z[point], z[beside], middle[new], along)
     entries = ChainIndex(whose, np.append(begin, size)[chains.starts], chains.rings)
