@@ -40,6 +40,8 @@ def main(out: str | Path = "out") -> dict[str, float]:
             volume += area * SPACING[2]
             heights.append(mesh.frame.z)
             mesh.save(folder / f"slice{name}.vtp")
+            if len(heights) == 4:
+                mesh.plot(None, folder / "slice.png")
             print(f"slice {name} at z = {mesh.frame.z:.1f} mm: {len(mesh.triangles)} triangles, {area:.2f} mm2")
     truth = 4 / 3 * np.pi * (3.2**2 - 0.8**2) ** 1.5  # a ball with a hole along its axis
     print(f"volume {volume:.1f} mm3, of the ball with its hole {truth:.1f}")

@@ -14,12 +14,14 @@ from pathlib import Path
 import numpy as np
 import zarr
 from distributed import Client, LocalCluster
+from matplotlib.figure import Figure
 
 from img2tri import mesh_tiles
 from img2tri.tiles.save_parts import load_tiles
 
 
-def main(out: Path) -> dict[str, float]:
+def main(out: str | Path = "out") -> dict[str, float]:
+    out = Path(out)
     out.mkdir(parents=True, exist_ok=True)
     mask = zarr.create_array(out / "mask.zarr", shape=(2500, 2500), chunks=(500, 500), dtype=bool, overwrite=True)
     for row in range(0, 2500, 500):
@@ -37,6 +39,10 @@ def main(out: Path) -> dict[str, float]:
     parts = zarr.open_group(made.path, mode="r")["parts"]
     in_parts = sum(part["triangles"].shape[0] for _, part in parts.groups())
     vertices, triangles, _ = load_tiles(made.path)
+    figure = Figure(figsize=(8, 8))
+    axes = figure.add_subplot(aspect="equal", title="the whole, read from its parts")
+    axes.triplot(*vertices[:, :2].T, triangles, linewidth=0.3)
+    figure.savefig(out / "mesh.png", dpi=130)
     return {
         "warnings": len(made.report["warnings"]),
         "in_parts": in_parts,

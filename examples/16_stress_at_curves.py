@@ -156,8 +156,8 @@ def errors(name: str, kind: str, count: int) -> NDArray[np.float64]:
     return 100 * (np.array(found) / EXACT[name] - 1)
 
 
-def main(_: str | Path = "out", count: int = 6) -> dict[str, float]:
-    """Print the errors: the worst of some places, and the mean of what the exact curve gives with the same edges."""
+def main(out: str | Path = "out", count: int = 6) -> dict[str, float]:
+    """Print the errors: the worst of some places, and the mean of what the exact curve gives with the same edges; draw a mesh."""
     print(f"{'error of the greatest stress, %':34}{'mask':>7}{'exact curve':>13}{'gray':>7}{'exact curve':>13}")
     found: dict[str, float] = {}
     for name in EXACT:
@@ -168,6 +168,11 @@ def main(_: str | Path = "out", count: int = 6) -> dict[str, float]:
             print(f"{worst:7.1f}{exact.mean():13.1f}", end="")
             found |= {f"{name}, {kind}": float(worst), f"{name}, {kind}, exact curve": float(exact.mean())}
         print()
+    folder = Path(out)
+    folder.mkdir(parents=True, exist_ok=True)
+    middle = next(iter(middles("slot, R 6", 1)))
+    image = draw(shape("slot, R 6", middle), gray=False)
+    mesh_shape("slot, R 6", image, middle).plot(image, folder / "slot.png")
     return found
 
 
