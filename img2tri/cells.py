@@ -29,12 +29,10 @@ def cells(places: Points, width: float) -> tuple[Ints, int]:
 
 def in_cells_beside(cell: Ints, above: int, chosen: Bools) -> Bools:
     """Tell which of all places lie in the cell of a chosen one, or in one beside it."""
-    marked = np.zeros(int(cell.max()) + 2 + above, bool)
-    hit = cell[chosen]
-    for up in (-above, 0, above):
-        for right in (-1, 0, 1):
-            marked[hit + up + right] = True
-    return marked[cell]
+    # No grid of marks: where places are few and far apart it would be larger than the image.
+    hit = np.unique(cell[chosen])
+    beside = np.concatenate([hit + up + right for up in (-above, 0, above) for right in (-1, 0, 1)])
+    return np.isin(cell, beside)
 
 
 def pairs_beside(own: Ints, cell: Ints, above: int) -> tuple[Ints, Ints]:

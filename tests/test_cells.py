@@ -35,3 +35,8 @@ def test_every_pair_nearer_than_a_cell_is_found_once(width):
     assert len(set(pairs)) == len(pairs)
     i, j = np.nonzero(near[:100, 100:])
     assert set(zip(i.tolist(), (j + 100).tolist(), strict=True)) <= set(pairs)
+
+
+def test_few_places_far_apart_cost_no_more_than_near_ones():
+    places = np.array([0, 0.009, 1e6 + 1e6j])
+    assert in_cells_beside(*cells(places, 0.01), np.array([True, False, False])).tolist() == [True, True, False]

@@ -16,18 +16,8 @@ from img2tri.triangles.generate.pslg import Pslg
 from img2tri.triangles.generate.quality_smoothing import patch_around, smooth, touching
 from img2tri.triangles.smallest_tangents import narrower
 
-PATCH_RINGS = (
-    3,
-    3,
-    6,
-    6,
-    6,
-    12,
-    12,
-    24,
-    24,
-    None,
-)  # how far patches reach around bad triangles, then around split edges of the rim; None: to the end
+# How far patches reach around bad triangles, then around split edges of the rim; None: to the end.
+PATCH_RINGS = (3, 3, 6, 6, 6, 12, 12, 24, 24, None)
 RESERVE = 2.0  # degrees over the least angle, which refinement reaches nearly always where it is asked of few triangles
 FEW, SOME_POINTS, POINTS_EACH = 24, 100, 12  # so many of them at most; and the points that may be added for all, and for each
 SHORTEST_EDGE = 0.05  # of the shortest segment in the patch: no edge becomes shorter. A stop only: sharp corners would be refined for ever
