@@ -26,7 +26,7 @@ from img2tri.raster.labels.rgb_to_labels import colour_names, label_colours
 from img2tri.raster.labels.segmentation import Segmentation, segment, without_specks
 from img2tri.raster.metadata.wanted_width import as_wide_as
 from img2tri.raster.reading import read
-from img2tri.raster.reading_notes import decisions
+from img2tri.raster.reading_decisions import decisions
 from img2tri.recipes.conforming import Sizes, conform, trace_outlines, wanted_sizes
 from img2tri.recipes.mirrored import conform_symmetric
 from img2tri.shapes.mirror_symmetry import check_symmetric

@@ -7,5 +7,5 @@ files      one decoder for each file format, and what tells the formats apart
 metadata   what a file says beside the values: which way up, how large a pixel is
 in_memory  what counts as an array of pixels; objects of other libraries; the hash of an image
 labels     `Picture` -> `Segmentation`: gray values, thresholds, label maps, cropping, removal of specks and holes
-reading_notes  what was decided while reading -> sentences for the report
+reading_decisions  what was decided while reading -> sentences for the report
 """
