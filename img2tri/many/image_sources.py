@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from img2tri.errors import ImageError, Img2triError, ParameterError, shown
-from img2tri.raster.files.decoded import NoSuchPageError
+from img2tri.raster.files.decoded_image import NoSuchPageError
 from img2tri.raster.files.image_names import images_named
 
 Named = tuple[str, Any]

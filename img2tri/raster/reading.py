@@ -16,7 +16,7 @@ import numpy as np
 
 from img2tri.errors import ParameterError, finite, integer, shown
 from img2tri.raster.files.byte_sources import is_file, source_of
-from img2tri.raster.files.decoded import Decoded
+from img2tri.raster.files.decoded_image import DecodedImage
 from img2tri.raster.in_memory.array_checks import as_array, pixels
 from img2tri.raster.in_memory.pillow_object import is_pillow
 from img2tri.raster.in_memory.pyvista_image import from_image_data, is_image_data
@@ -137,7 +137,7 @@ def _placed_object(image: Any, page: int) -> Picture | None:
     return from_data_array(image) if is_data_array(image) and knows_its_place(image) else None
 
 
-def _of_array(image: Any) -> Decoded:
+def _of_array(image: Any) -> DecodedImage:
     """Take an array, or an object that is one without a place of its own."""
     if is_pillow(image):
         from img2tri.raster.files.pillow_images import of_pillow
@@ -145,8 +145,8 @@ def _of_array(image: Any) -> Decoded:
         return of_pillow(image)
     if is_data_array(image):
         picture = from_data_array(image)
-        return Decoded(picture.values, picture.notes, missing=picture.missing)
-    return Decoded(image, {})
+        return DecodedImage(picture.values, picture.notes, missing=picture.missing)
+    return DecodedImage(image, {})
 
 
 def _check_precision(frame: Frame) -> None:

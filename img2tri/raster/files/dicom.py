@@ -16,14 +16,14 @@ import numpy as np
 from img2tri.arrays import Bools
 from img2tri.errors import FileError
 from img2tri.raster.files.byte_sources import Source
-from img2tri.raster.files.decoded import Decoded, check_page
+from img2tri.raster.files.decoded_image import DecodedImage, check_page
 from img2tri.raster.in_memory.array_checks import Pixels
 from img2tri.raster.metadata.pixel_size import positive_size
 
 PIXEL_DATA = ("PixelData", "FloatPixelData", "DoubleFloatPixelData")
 
 
-def decode_dicom(source: Source, page: int, max_pixels: int) -> Decoded:
+def decode_dicom(source: Source, page: int, max_pixels: int) -> DecodedImage:
     """Decode one frame of a DICOM file.
 
     Parameters
@@ -72,8 +72,8 @@ def decode_dicom(source: Source, page: int, max_pixels: int) -> Decoded:
         dy, dx = measures.get(tag) or (0, 0)
         size = positive_size(dx, dy)
         if size is not None:
-            return Decoded(values, notes | {"spacing_from": tag}, size, missing=missing)
-    return Decoded(values, notes, missing=missing)
+            return DecodedImage(values, notes | {"spacing_from": tag}, size, missing=missing)
+    return DecodedImage(values, notes, missing=missing)
 
 
 def _padding(stored: Pixels, data: Any) -> Bools | None:

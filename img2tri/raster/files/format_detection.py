@@ -14,7 +14,7 @@ from PIL import Image, UnidentifiedImageError
 
 from img2tri.errors import FileError, ImageError, Img2triError
 from img2tri.raster.files.byte_sources import GZIP, Source
-from img2tri.raster.files.decoded import Decoded
+from img2tri.raster.files.decoded_image import DecodedImage
 from img2tri.raster.files.dicom import decode_dicom
 from img2tri.raster.files.hdf5_zarr import HDF5_START, decode_hdf5, decode_zarr
 from img2tri.raster.files.nifti import decode_nifti
@@ -36,7 +36,7 @@ NIFTI_START = 348
 FIRST_BYTES = 1024  # that tell all formats apart, also a NIfTI file that is compressed
 
 
-def decode(source: Source, page: int, max_pixels: int) -> Decoded:
+def decode(source: Source, page: int, max_pixels: int) -> DecodedImage:
     """Decode one image of a file.
 
     Parameters
@@ -50,7 +50,7 @@ def decode(source: Source, page: int, max_pixels: int) -> Decoded:
 
     Returns
     -------
-    Decoded
+    DecodedImage
         For the notes see `reading.read`.
 
     Raises

@@ -12,14 +12,14 @@ import numpy as np
 
 from img2tri.errors import FileError, ImageError
 from img2tri.raster.files.byte_sources import Source
-from img2tri.raster.files.decoded import Decoded, check_page
+from img2tri.raster.files.decoded_image import DecodedImage, check_page
 from img2tri.raster.files.volumes import planes_of
 
 HDF5_START = b"\x89HDF\r\n\x1a\n"
 MOST_LISTED = 20
 
 
-def decode_hdf5(source: Source, page: int, max_pixels: int) -> Decoded:
+def decode_hdf5(source: Source, page: int, max_pixels: int) -> DecodedImage:
     """Decode one plane of an array in an HDF5 file; pages run along the first axes."""
     try:
         import h5py
@@ -31,7 +31,7 @@ def decode_hdf5(source: Source, page: int, max_pixels: int) -> Decoded:
         return _decode(source, arrays, lambda name: file[name], page, max_pixels, "HDF5")
 
 
-def decode_zarr(source: Source, page: int, max_pixels: int) -> Decoded:
+def decode_zarr(source: Source, page: int, max_pixels: int) -> DecodedImage:
     """Decode one plane of an array in a zarr store, a folder; pages run along the first axes."""
     try:
         import zarr
@@ -44,7 +44,7 @@ def decode_zarr(source: Source, page: int, max_pixels: int) -> Decoded:
     return _decode(source, arrays, lambda name: node[name], page, max_pixels, "zarr")
 
 
-def _decode(source: Source, arrays: list[str], opened: Callable[[str], Any], page: int, max_pixels: int, kind: str) -> Decoded:
+def _decode(source: Source, arrays: list[str], opened: Callable[[str], Any], page: int, max_pixels: int, kind: str) -> DecodedImage:
     wanted = source.inner.strip("/") if source.inner else arrays[0] if len(arrays) == 1 else None
     if wanted not in arrays:
         listed = ", ".join(f"/{name}" for name in sorted(arrays)[:MOST_LISTED]) or "no array of two axes"
@@ -58,4 +58,4 @@ def _decode(source: Source, arrays: list[str], opened: Callable[[str], Any], pag
     index = iter(planes.index(page))
     kept = [n != 1 for n in array.shape] if len(array.shape) > len(planes.shape) else [True] * len(array.shape)
     at = tuple(0 if not keep else next(index, slice(None)) for keep in kept)
-    return Decoded(np.asarray(array[at]).reshape(planes.plane), notes)
+    return DecodedImage(np.asarray(array[at]).reshape(planes.plane), notes)

@@ -24,13 +24,13 @@ import numpy as np
 
 from img2tri.errors import FileError, ImageError
 from img2tri.raster.files.byte_sources import GZIP, Source
-from img2tri.raster.files.decoded import Decoded, check_page, plane_height
+from img2tri.raster.files.decoded_image import DecodedImage, check_page, plane_height
 from img2tri.raster.metadata.pixel_size import positive_size
 
 MILLIMETRES = {"meter": 1000.0, "micron": 0.001}  # all else, unknown too, is taken as what it nearly always is
 
 
-def decode_nifti(source: Source, page: int, max_pixels: int) -> Decoded:
+def decode_nifti(source: Source, page: int, max_pixels: int) -> DecodedImage:
     """Decode one slice of a NIfTI file.
 
     Parameters
@@ -82,7 +82,7 @@ def decode_nifti(source: Source, page: int, max_pixels: int) -> Decoded:
     dx, dy, *steps = (scale * abs(float(str(zoom))) for zoom in noted.get_zooms()[:3])
     flat = math.prod(others) == (others or [1])[0]  # no other axis than z
     above = plane_height(page, steps if flat else [])
-    return Decoded(np.ascontiguousarray(values.swapaxes(0, 1)[::-1]), notes, positive_size(dx, dy), height=above)
+    return DecodedImage(np.ascontiguousarray(values.swapaxes(0, 1)[::-1]), notes, positive_size(dx, dy), height=above)
 
 
 def _unpacked(library: Any, source: Source) -> Any:

@@ -14,19 +14,19 @@ from numpy.lib import format as npy
 
 from img2tri.errors import FileError, ImageError
 from img2tri.raster.files.byte_sources import Source
-from img2tri.raster.files.decoded import Decoded, check_page
+from img2tri.raster.files.decoded_image import DecodedImage, check_page
 from img2tri.raster.files.volumes import planes_of, read_plane
 
 NPY_START, ZIP_START = b"\x93NUMPY", b"PK\x03\x04"
 
 
-def decode_npy(source: Source, page: int, max_pixels: int) -> Decoded:
+def decode_npy(source: Source, page: int, max_pixels: int) -> DecodedImage:
     """Decode one plane of a .npy file; pages run along the first axes."""
     with source.open() as file:
         return _decode(file, source, page, max_pixels, "NPY")
 
 
-def decode_npz(source: Source, page: int, max_pixels: int) -> Decoded:
+def decode_npz(source: Source, page: int, max_pixels: int) -> DecodedImage:
     """Decode one plane of an array in a .npz file: of the only one, or of the one named."""
     with source.open() as whole, zipfile.ZipFile(whole) as archive:
         names = [name for name in archive.namelist() if name.endswith(".npy")]
@@ -40,7 +40,7 @@ def decode_npz(source: Source, page: int, max_pixels: int) -> Decoded:
             return _decode(file, source, page, max_pixels, "NPZ")  # type: ignore[arg-type]
 
 
-def _decode(file: BinaryIO, source: Source, page: int, max_pixels: int, kind: str) -> Decoded:
+def _decode(file: BinaryIO, source: Source, page: int, max_pixels: int, kind: str) -> DecodedImage:
     version = npy.read_magic(file)
     read_header = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}.get(version)
     if read_header is None:
@@ -58,4 +58,4 @@ def _decode(file: BinaryIO, source: Source, page: int, max_pixels: int, kind: st
     notes = {"format": kind} | check_page(source, page, planes.pages, planes.width, planes.height, max_pixels)
     if not by_columns:
         values = read_plane(file, source, dtype, planes, page)
-    return Decoded(values, notes)
+    return DecodedImage(values, notes)

@@ -18,7 +18,7 @@ import numpy as np
 
 from img2tri.errors import FileError, ImageError
 from img2tri.raster.files.byte_sources import Source
-from img2tri.raster.files.decoded import Decoded, check_page, plane_height
+from img2tri.raster.files.decoded_image import DecodedImage, check_page, plane_height
 from img2tri.raster.files.volumes import planes_of, read_plane
 from img2tri.raster.metadata.geotiff_imagej_ome import LENGTH_UNITS
 from img2tri.raster.metadata.pixel_size import positive_size
@@ -40,7 +40,7 @@ VOXEL_TYPES = {
 KINDS_OF_COLOURS = ("rgb-color", "rgba-color", "3-color", "4-color", "vector", "list", "3-vector", "4-vector")
 
 
-def decode_nrrd(source: Source, page: int, max_pixels: int) -> Decoded:
+def decode_nrrd(source: Source, page: int, max_pixels: int) -> DecodedImage:
     """Decode one slice of a NRRD file; of a segmentation of 3D Slicer its notes hold the names of segments."""
     with source.open() as file:
         fields, keys = _nrrd_header(file)
@@ -63,10 +63,10 @@ def decode_nrrd(source: Source, page: int, max_pixels: int) -> Decoded:
     unit, scale = _unit(fields.get("space units", ""))
     lengths = [scale * length for length in _nrrd_lengths(fields, layers=layers)]
     size = positive_size(lengths[0], lengths[1]) if len(lengths) > 1 else None
-    return Decoded(values, notes, size, unit, height=plane_height(page, lengths[2:]))
+    return DecodedImage(values, notes, size, unit, height=plane_height(page, lengths[2:]))
 
 
-def decode_metaimage(source: Source, page: int, max_pixels: int) -> Decoded:
+def decode_metaimage(source: Source, page: int, max_pixels: int) -> DecodedImage:
     """Decode one slice of a MetaImage, .mha or .mhd with its values in another file."""
     with source.open() as file:
         fields: dict[str, str] = {}
@@ -88,7 +88,7 @@ def decode_metaimage(source: Source, page: int, max_pixels: int) -> Decoded:
                 values, notes = _plane(data, source, dtype, sizes, page, max_pixels, encoding, layers=channels > 1)
     spacing = [float(n) for n in fields.get("ElementSpacing", fields.get("ElementSize", "")).split()]
     size = positive_size(*spacing[:2]) if len(spacing) > 1 else None
-    return Decoded(values, {"format": "MetaImage"} | notes, size, height=plane_height(page, spacing[2:]))
+    return DecodedImage(values, {"format": "MetaImage"} | notes, size, height=plane_height(page, spacing[2:]))
 
 
 def _plane(

@@ -19,7 +19,7 @@ from PIL.TiffImagePlugin import COMPRESSION_INFO
 
 from img2tri.errors import FileError, ImageError
 from img2tri.raster.files.byte_sources import Source
-from img2tri.raster.files.decoded import Decoded, check_page, turned
+from img2tri.raster.files.decoded_image import DecodedImage, check_page, turned
 from img2tri.raster.files.tiff import MIN_IS_WHITE, of_tiff
 from img2tri.raster.files.windows_icons import check_icon
 from img2tri.raster.in_memory.array_checks import Pixels
@@ -90,7 +90,7 @@ def _opened(source: Source, max_pixels: float = math.inf) -> Iterator[Image.Imag
             yield img
 
 
-def decode_with_pillow(source: Source, start: bytes, page: int, max_pixels: int) -> Decoded:
+def decode_with_pillow(source: Source, start: bytes, page: int, max_pixels: int) -> DecodedImage:
     """Decode one image of a file by Pillow, as `format_detection.decode` does; `start` are its first bytes."""
     check_icon(source, max_pixels)
     with _opened(source, max_pixels) as img:
@@ -110,7 +110,7 @@ def decode_with_pillow(source: Source, start: bytes, page: int, max_pixels: int)
         if palette is not None:
             notes["palette"] = palette
     if tags is None:
-        return turned(Decoded(upright(values, turn), notes, size), turn)
+        return turned(DecodedImage(upright(values, turn), notes, size), turn)
     if tags.get(PHOTOMETRIC) == MIN_IS_WHITE and values.ndim == 2:
         notes["min_is_white"] = True
         if values.dtype in (bool, np.uint8):
@@ -119,11 +119,11 @@ def decode_with_pillow(source: Source, start: bytes, page: int, max_pixels: int)
     return turned(of_tiff(values, notes, tags, turn), turn)
 
 
-def of_pillow(img: Image.Image) -> Decoded:
+def of_pillow(img: Image.Image) -> DecodedImage:
     """Take an image Pillow has opened or made, as it is."""
     values, palette = _values(img)
     notes: dict[str, Any] = {"format": "PIL"} | ({} if palette is None else {"palette": palette})
-    return Decoded(values, notes, pixel_size(img))
+    return DecodedImage(values, notes, pixel_size(img))
 
 
 def _values(img: Image.Image) -> tuple[Pixels, Pixels | None]:

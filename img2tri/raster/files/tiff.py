@@ -9,7 +9,7 @@ import numpy as np
 
 from img2tri.errors import FileError, ImageError
 from img2tri.raster.files.byte_sources import Source
-from img2tri.raster.files.decoded import Decoded, check_page, turned
+from img2tri.raster.files.decoded_image import DecodedImage, check_page, turned
 from img2tri.raster.in_memory.array_checks import Pixels
 from img2tri.raster.metadata.exif_orientation import orientation, upright
 from img2tri.raster.metadata.geotiff_imagej_ome import place_of_tiff
@@ -20,7 +20,7 @@ MIN_IS_WHITE = 0  # TIFF's word for gray values of which the least is white
 ASSOCIATED = 1  # TIFF's word for colours multiplied by their alpha
 
 
-def decode_tiff(source: Source, page: int, max_pixels: int) -> Decoded:
+def decode_tiff(source: Source, page: int, max_pixels: int) -> DecodedImage:
     """Decode a TIFF of a type Pillow has no mode for: int64, float64, int8, colours of 16 bit."""
     try:
         import tifffile
@@ -63,12 +63,12 @@ def _values_of(sheet: Any, source: Source) -> Pixels:
         ) from error
 
 
-def of_tiff(values: Pixels, notes: dict[str, Any], tags: Mapping[int, Any], turn: int) -> Decoded:
+def of_tiff(values: Pixels, notes: dict[str, Any], tags: Mapping[int, Any], turn: int) -> DecodedImage:
     """Add what the tags of a TIFF say to its upright values, whichever library read them."""
     rows = values.shape[1] if turn >= 5 else values.shape[0]
     place = place_of_tiff(tags, rows)
     corner = place.corner if turn == 1 else None  # no program that knows of places turns images
-    return Decoded(values, notes, place.size, place.unit, corner, gdal_nodata(tags, values))
+    return DecodedImage(values, notes, place.size, place.unit, corner, gdal_nodata(tags, values))
 
 
 def _divided(values: Pixels) -> Pixels:

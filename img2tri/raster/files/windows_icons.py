@@ -5,7 +5,7 @@ from __future__ import annotations
 import struct
 
 from img2tri.raster.files.byte_sources import Source
-from img2tri.raster.files.decoded import check_page
+from img2tri.raster.files.decoded_image import check_page
 
 ICON_START = b"\0\0\1\0"
 PNG_START = b"\x89PNG\r\n\x1a\n"

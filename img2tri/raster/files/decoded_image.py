@@ -15,7 +15,7 @@ from img2tri.raster.metadata.pixel_size import PixelSize
 
 
 @dataclass(frozen=True, eq=False)
-class Decoded:
+class DecodedImage:
     """One image of a file.
 
     Attributes
@@ -71,7 +71,7 @@ def check_page(source: Source, page: int, pages: int, width: int, height: int, m
     return {"pages": pages, "page": page} if pages > 1 else {}
 
 
-def turned(image: Decoded, turn: int) -> Decoded:
+def turned(image: DecodedImage, turn: int) -> DecodedImage:
     """Note that an image was turned by its EXIF orientation, and turn the size of its pixels."""
     notes = image.notes | {"orientation": turn} if turn > 1 else image.notes
     return replace(image, notes=notes, size=image.size[::-1] if image.size is not None and turn >= 5 else image.size)
