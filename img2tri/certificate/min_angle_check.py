@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from img2tri.arrays import Floats, Ints, as_complex
-from img2tri.triangles.smallest_tangents import smallest_tangents
+from img2tri.triangles.min_angle_tangents import min_angle_tangents
 from img2tri.triangles.tools.quality_summary import measure
 
 ROUNDED = 1e-6  # relative: tangents that differ by less may be those of equal angles
@@ -21,7 +21,7 @@ def small_angles(vertices: Floats, triangles: Ints, below: float) -> tuple[Ints,
     >>> which.tolist(), angles.round(2).tolist()
     ([1], [26.57])
     """
-    tangents = np.abs(smallest_tangents(as_complex(vertices), triangles))  # an angle knows no orientation
+    tangents = np.abs(min_angle_tangents(as_complex(vertices), triangles))  # an angle knows no orientation
     limit = max(float(tangents.min()), np.tan(np.radians(below)))
     which = np.flatnonzero(tangents <= limit * (1 + ROUNDED) + ROUNDED**2)
     return which, measure(vertices, triangles[which], ["min_angle"])["min_angle"]

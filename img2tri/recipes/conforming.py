@@ -221,7 +221,7 @@ def _filled(coarse: Simplification, pairs: PeriodicPairs, sizes: Sizes, demands:
     these are at fault: at the corners of triangles with too small an angle, or where no mesh could be made.
     """
     from img2tri.triangles.generate.constrained_delaunay import PslgError
-    from img2tri.triangles.smallest_tangents import narrower
+    from img2tri.triangles.min_angle_tangents import narrower
 
     chains = coarse.coarse()
     try:

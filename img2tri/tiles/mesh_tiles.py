@@ -34,7 +34,7 @@ from img2tri.tiles.save_parts import FORMATS, Part, save_parts
 from img2tri.tiles.seams.piece_seams import Piece, Sides, join_pieces
 from img2tri.tiles.vertex_numbers import global_numbers, numbered_vertices, seam_of
 from img2tri.tiles.window_regions import read_regions
-from img2tri.triangles.smallest_tangents import smallest_angles
+from img2tri.triangles.min_angle_tangents import smallest_angles
 
 MOST_AREA_ERROR, FEW_PIXELS = 0.01, 16  # of the whole, but of no fewer pixels, as in the certificate of a mesh in memory
 TilesProgress = Callable[[str, float], object]

@@ -19,7 +19,7 @@ from img2tri.triangles.generate.pslg import Pslg
 from img2tri.triangles.generate.quality_smoothing import smooth, smooth_and_raise
 from img2tri.triangles.generate.ruppert_refinement import refine_locally
 from img2tri.triangles.generate.valence_repair import repair_valences
-from img2tri.triangles.smallest_tangents import narrower
+from img2tri.triangles.min_angle_tangents import narrower
 
 REPAIRS = 2  # rounds of smoothing, valence repair and triangulation
 PATCHES = (2, 4, 7, 11)  # rings of triangles around bad ones that are triangulated anew

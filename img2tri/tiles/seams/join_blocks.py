@@ -18,7 +18,7 @@ from img2tri.tiles.seams.gap_triangulation import Gap, GapWalls, gap_filled, imp
 from img2tri.tiles.seams.joint_check import check_joint
 from img2tri.tiles.seams.outline_splices import Ways, splice
 from img2tri.tiles.seams.piece_seams import Piece, SeamError, Sides, evened, find_stubs, taken
-from img2tri.triangles.smallest_tangents import smallest_angles
+from img2tri.triangles.min_angle_tangents import smallest_angles
 
 LOOSE_CLEARANCE = 0.66  # of the longest edge at a vertex: loose points nearer to the border are left out
 SAMPLES = 4  # places along each edge of the border, to measure distances to

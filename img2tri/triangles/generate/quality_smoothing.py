@@ -34,7 +34,7 @@ import numpy as np
 from img2tri.arrays import Bools, Floats, Ints, Points, blocks
 from img2tri.errors import bounded
 from img2tri.triangles.generate.corner_sums import CornerSums
-from img2tri.triangles.smallest_tangents import smallest_tangents
+from img2tri.triangles.min_angle_tangents import min_angle_tangents
 
 TURN = np.exp(2j * np.pi / 3)
 DEFECT = np.array([1, TURN, TURN**2])
@@ -102,7 +102,7 @@ def smooth(vertices: Points, triangles: Ints, free: Bools, schedule: Schedule = 
 
 def raise_worst_angles(vertices: Points, triangles: Ints, free: Bools, target: float = TARGET) -> Points:
     """Smooth with large powers, but only around the worst angles, and as long as these are less than `target` degrees."""
-    return _raised(vertices, smallest_tangents(vertices, triangles), triangles, free, target)[0]
+    return _raised(vertices, min_angle_tangents(vertices, triangles), triangles, free, target)[0]
 
 
 def smooth_and_raise(vertices: Points, triangles: Ints, free: Bools) -> Points:
@@ -146,7 +146,7 @@ class _Smoother:
                     step = damping * moves[lines.at] / total[lines.at]
                     way = ((moved[lines.at] + step - lines.start) * lines.along.conj()).real
                     moved[lines.at] = lines.start + np.clip(way, -lines.limits, lines.limits) * lines.along
-        return _shortened(vertices, moved, self._triangles, smallest_tangents(vertices, self._triangles) if tangents is None else tangents)
+        return _shortened(vertices, moved, self._triangles, min_angle_tangents(vertices, self._triangles) if tangents is None else tangents)
 
 
 def _raised(vertices: Points, tangents: Floats, triangles: Ints, free: Bools, target: float = TARGET) -> tuple[Points, Floats]:
@@ -188,7 +188,7 @@ def _shortened(before: Points, after: Points, triangles: Ints, tangents: Floats)
     The smallest tangents (m,) are those before; those after are returned with the vertices.
     """
     least = np.minimum(tangents, max(math.tan(math.radians(SAFE)), tangents.min(initial=np.inf))) - 1e-12
-    moved, part, found = after.copy(), np.ones(len(before)), smallest_tangents(after, triangles)
+    moved, part, found = after.copy(), np.ones(len(before)), min_angle_tangents(after, triangles)
     worse = np.flatnonzero(found < least)
     # Each round shortens a move, and each move is shortened four times at most.
     for _ in bounded("smoothing", 4 * len(before) + 2):
@@ -202,6 +202,6 @@ def _shortened(before: Points, after: Points, triangles: Ints, tangents: Floats)
         changed = np.zeros(len(before), bool)
         changed[back] = True
         doubtful = np.flatnonzero(touching(triangles, changed))
-        found[doubtful] = smallest_tangents(moved, triangles[doubtful])
+        found[doubtful] = min_angle_tangents(moved, triangles[doubtful])
         worse = doubtful[found[doubtful] < least[doubtful]]
     return moved, found

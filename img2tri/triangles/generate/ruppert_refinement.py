@@ -14,7 +14,7 @@ from img2tri.arrays import Bools, Ints, Points, as_complex, as_rows, unique_edge
 from img2tri.triangles.generate.constrained_delaunay import ruppert
 from img2tri.triangles.generate.pslg import Pslg
 from img2tri.triangles.generate.quality_smoothing import patch_around, smooth, touching
-from img2tri.triangles.smallest_tangents import narrower
+from img2tri.triangles.min_angle_tangents import narrower
 
 # How far patches reach around bad triangles, then around split edges of the rim; None: to the end.
 PATCH_RINGS = (3, 3, 6, 6, 6, 12, 12, 24, 24, None)

@@ -19,7 +19,7 @@ from img2tri.triangles.generate.interior_sizes import SizeFunction, nearest_of
 from img2tri.triangles.generate.pslg import Pslg
 from img2tri.triangles.generate.quality_smoothing import SAFE, smooth, smooth_and_raise
 from img2tri.triangles.generate.valence_repair import repair_valences
-from img2tri.triangles.smallest_tangents import narrower
+from img2tri.triangles.min_angle_tangents import narrower
 
 CLEAR = 0.66  # lattice nodes nearer to an outline or apex than this times the wanted length are dropped
 NUDGE, GOLDEN = 1e-7, 0.618  # of the shortest segment: how far free points are put off; of a turn, from one to the next: any odd part

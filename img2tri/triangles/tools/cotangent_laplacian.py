@@ -15,7 +15,7 @@ from scipy.sparse import csc_array, csc_matrix, diags_array
 
 from img2tri.arrays import Floats, Ints, as_complex
 from img2tri.errors import MeshError, finite
-from img2tri.triangles.smallest_tangents import smallest_tangents
+from img2tri.triangles.min_angle_tangents import min_angle_tangents
 from img2tri.triangles.tools.inversion_guard import put_back
 from img2tri.triangles.tools.mesh_checks import check_mesh, check_regions, check_selection, check_values
 from img2tri.triangles.tools.topology import curve_vertices
@@ -138,7 +138,7 @@ def laplacian(vertices: Floats, triangles: Ints) -> csc_array:
     >>> laplacian(np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]), np.array([[0, 1, 2]])).toarray().tolist()
     [[1.0, -0.5, -0.5], [-0.5, 0.5, 0.0], [-0.5, 0.0, 0.5]]
     """
-    sound = np.abs(smallest_tangents(as_complex(vertices), triangles)) > 1e-6
+    sound = np.abs(min_angle_tangents(as_complex(vertices), triangles)) > 1e-6
     if not sound.any():
         return csc_array((len(vertices), len(vertices)))
     return csc_array(-igl.cotmatrix(vertices, triangles[sound]))

@@ -11,7 +11,7 @@ import numpy as np
 
 from img2tri.arrays import Floats, Ints, as_complex
 from img2tri.errors import bounded
-from img2tri.triangles.smallest_tangents import smallest_tangents
+from img2tri.triangles.min_angle_tangents import min_angle_tangents
 
 TANGENT_ROUNDING = 1e-12
 """Part of the tangent that counts as rounding: else a mesh merely shifted would be taken for spoiled."""
@@ -42,7 +42,7 @@ def put_back(before: Floats, after: Floats, triangles: Ints) -> Floats:
     >>> put_back(before, after, np.array([[0, 1, 2]]))[2].tolist()
     [0.0, 1.0]
     """
-    floor = smallest_tangents(as_complex(before), triangles)
+    floor = min_angle_tangents(as_complex(before), triangles)
     floor = np.minimum(floor, floor[floor > 0].min(initial=2.0))
     floor -= TANGENT_ROUNDING * np.abs(floor)
     result = after.copy()
@@ -51,7 +51,7 @@ def put_back(before: Floats, after: Floats, triangles: Ints) -> Floats:
     for _ in bounded("inversion guard", len(before) + 1):
         if not len(look_at):
             break
-        fell = look_at[smallest_tangents(as_complex(result), triangles[look_at]) < floor[look_at]]
+        fell = look_at[min_angle_tangents(as_complex(result), triangles[look_at]) < floor[look_at]]
         back = np.zeros(len(moved), bool)
         back[triangles[fell]] = True
         back &= moved

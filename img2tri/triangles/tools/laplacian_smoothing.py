@@ -22,7 +22,7 @@ from scipy.sparse import diags_array
 
 from img2tri.arrays import Bools, Floats, Ints, as_complex
 from img2tri.errors import ParameterError, choice, integer
-from img2tri.triangles.smallest_tangents import smallest_tangents
+from img2tri.triangles.min_angle_tangents import min_angle_tangents
 from img2tri.triangles.tools.cotangent_laplacian import carry, laplacian, smooth_field
 from img2tri.triangles.tools.curve_fairing import Bounds, fair_curves
 from img2tri.triangles.tools.inversion_guard import put_back
@@ -179,7 +179,7 @@ def _relaxed(vertices: Floats, triangles: Ints, passes: int, regions: Ints | Non
     L = laplacian(vertices, triangles)
     diagonal = L.diagonal()
     free = ~curve_vertices(triangles, len(vertices), regions) & (diagonal > 0)
-    free[triangles[smallest_tangents(as_complex(vertices), triangles) < 1e-4]] = False
+    free[triangles[min_angle_tangents(as_complex(vertices), triangles) < 1e-4]] = False
     rows = diags_array(DAMPING / diagonal[free]) @ L.tocsr()[free]
     # Differences from the middle: far from the origin L x would be a small difference of large numbers.
     middle = vertices.mean(axis=0)

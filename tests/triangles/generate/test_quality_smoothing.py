@@ -18,7 +18,7 @@ from img2tri.triangles.generate.quality_smoothing import (
     smooth,
 )
 from img2tri.triangles.generate.valence_repair import excess, repair_valences
-from img2tri.triangles.smallest_tangents import smallest_angles
+from img2tri.triangles.min_angle_tangents import smallest_angles
 
 TURN = np.exp(1j * np.pi / 3)
 FEW = ((1, 1.0, 3),)

@@ -7,7 +7,7 @@ import oracles
 from scipy.spatial import Delaunay
 
 from img2tri.arrays import as_complex
-from img2tri.triangles.smallest_tangents import narrower, smallest_angles, smallest_tangents
+from img2tri.triangles.min_angle_tangents import min_angle_tangents, narrower, smallest_angles
 
 
 def random_mesh(seed):
@@ -36,5 +36,5 @@ def test_triangles_are_told_by_the_angle_given():
 
 def test_triangles_without_area_have_none():
     z = np.array([0, 1, 2, 0, 0], complex)
-    assert smallest_tangents(z, np.array([[0, 1, 2], [0, 3, 4]])).tolist() == [0, 0]
-    assert smallest_tangents(z, np.zeros((0, 3), np.int64)).shape == (0,)
+    assert min_angle_tangents(z, np.array([[0, 1, 2], [0, 3, 4]])).tolist() == [0, 0]
+    assert min_angle_tangents(z, np.zeros((0, 3), np.int64)).shape == (0,)

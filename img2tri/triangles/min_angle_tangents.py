@@ -11,14 +11,14 @@ import numpy as np
 from img2tri.arrays import Bools, Floats, Ints, Points, blocks
 
 
-def smallest_tangents(vertices: Points, triangles: Ints) -> Floats:
+def min_angle_tangents(vertices: Points, triangles: Ints) -> Floats:
     """Return the tangent (m,) of the smallest angle of each triangle; negative for clockwise triangles, 0 for flat ones.
 
     The smallest angle lies opposite the shortest side: its cotangent is (sum of the other squares - its square) / (4 area).
 
     Examples
     --------
-    >>> smallest_tangents(np.array([0, 1, 1j]), np.array([[0, 1, 2], [0, 2, 1]]))
+    >>> min_angle_tangents(np.array([0, 1, 1j]), np.array([[0, 1, 2], [0, 2, 1]]))
     array([ 1., -1.])
     """
     tangents = np.empty(len(triangles))
@@ -36,10 +36,10 @@ def smallest_tangents(vertices: Points, triangles: Ints) -> Floats:
 
 def smallest_angles(vertices: Points, triangles: Ints) -> Floats:
     """Return the smallest angle (m,) of each triangle in degrees; negative for clockwise ones."""
-    angles: Floats = np.degrees(np.arctan(smallest_tangents(vertices, triangles)))
+    angles: Floats = np.degrees(np.arctan(min_angle_tangents(vertices, triangles)))
     return angles
 
 
 def narrower(vertices: Points, triangles: Ints, degrees: float) -> Bools:
     """Tell which triangles (m,) have an angle of less than so many degrees, or are clockwise."""
-    return np.asarray(smallest_tangents(vertices, triangles) < np.tan(np.radians(degrees)))
+    return np.asarray(min_angle_tangents(vertices, triangles) < np.tan(np.radians(degrees)))
