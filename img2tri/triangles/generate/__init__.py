@@ -9,7 +9,7 @@ graded_lattice        Nested lattices: finer nodes where shorter edges are wante
 strip                 What lies between outlines and core: triangulated, smoothed, joined with the core.
 constrained_delaunay  Constrained Delaunay triangulation, regions by votes, and Ruppert's refinement.
 quality_smoothing     Vertices move so that triangles become equilateral; the worst angles first.
-corner_sums           Sums over the corners of triangles, vertex by vertex.
+vertex_sums           Sums over the corners of triangles, vertex by vertex.
 valence_repair        Vertices with too many or too few triangles are split or removed.
 ruppert_refinement    The safety net: Ruppert's refinement in a patch around too small angles.
 """

@@ -33,7 +33,7 @@ import numpy as np
 
 from img2tri.arrays import Bools, Floats, Ints, Points, blocks
 from img2tri.errors import bounded
-from img2tri.triangles.generate.corner_sums import CornerSums
+from img2tri.triangles.generate.vertex_sums import VertexSums
 from img2tri.triangles.min_angle_tangents import min_angle_tangents
 
 TURN = np.exp(2j * np.pi / 3)
@@ -120,7 +120,7 @@ class _Smoother:
     def __init__(self, triangles: Ints, free: Bools) -> None:
         n = len(free)
         self._triangles, self._corners = triangles, _columns(triangles)
-        self._moves, self._weights = CornerSums(triangles, n, -DEFECT.conj()), CornerSums(triangles, n, np.ones(3))
+        self._moves, self._weights = VertexSums(triangles, n, -DEFECT.conj()), VertexSums(triangles, n, np.ones(3))
         used = np.zeros(n, bool)
         used[triangles] = True
         self._where = np.flatnonzero(free & used)

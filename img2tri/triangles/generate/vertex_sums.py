@@ -24,12 +24,12 @@ except ImportError:  # it is SciPy's own, and may move
         out += csc_array((data, entries, ends), shape=(n, m)) @ values
 
 
-class CornerSums:
+class VertexSums:
     """Sums over the corners that meet at each vertex, of the values of their triangles times factors.
 
     Examples
     --------
-    >>> CornerSums(np.array([[0, 1, 2], [0, 2, 3]]), 4, np.array([1.0, 2.0, 3.0])).of(np.array([1.0, 10.0])).tolist()
+    >>> VertexSums(np.array([[0, 1, 2], [0, 2, 3]]), 4, np.array([1.0, 2.0, 3.0])).of(np.array([1.0, 10.0])).tolist()
     [11.0, 2.0, 23.0, 30.0]
     """
 
