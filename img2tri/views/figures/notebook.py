@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from img2tri.arrays import Bools, Floats, Ints, runs, unique_edges
-from img2tri.views.figures.corner_angles import corner_angles
 from img2tri.views.figures.image_png import png
 from img2tri.views.figures.region_colours import Colours, as_hex, region_colours
+from img2tri.views.figures.triangle_angles import triangle_angles
 from img2tri.views.objects.flat_or_extruded import per_triangle, plane_mesh
 from img2tri.views.objects.region_borders import bordering
 
@@ -105,7 +105,7 @@ def html(
 def _numbers(vertices: Floats, triangles: Ints, labels: NDArray[np.generic]) -> str:
     counts = {"triangle triangles": len(triangles), "vertex vertices": len(vertices), "region regions": len(np.unique(labels))}
     parts = [f"{count:,} {words.split()[count != 1]}" for words, count in counts.items()]
-    return " · ".join([*parts, f"smallest angle {np.rad2deg(corner_angles(vertices, triangles).min()):.1f}°"])
+    return " · ".join([*parts, f"smallest angle {np.rad2deg(triangle_angles(vertices, triangles).min()):.1f}°"])
 
 
 def _places(vertices: Floats, *, upward: bool) -> tuple[Ints, tuple[int, int]]:

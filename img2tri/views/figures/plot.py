@@ -19,8 +19,8 @@ from img2tri.arrays import Floats, Ints
 from img2tri.errors import choice
 from img2tri.types import Frame
 from img2tri.views.figures import figure_parts as parts
-from img2tri.views.figures.corner_angles import corner_angles
 from img2tri.views.figures.region_colours import Colours
+from img2tri.views.figures.triangle_angles import triangle_angles
 from img2tri.views.formats.atomic_write import known_suffix, store, writable
 from img2tri.views.objects.flat_or_extruded import per_triangle, plane_mesh
 
@@ -108,7 +108,7 @@ def draw(
     if colour_by is not None:
         choice("colour_by", colour_by, ["quality", "region"])
     labels = np.ones(len(t), np.int64) if regions is None else per_triangle("regions", regions, len(t))
-    angles = corner_angles(v, t)
+    angles = triangle_angles(v, t)
     # r / R = 4 sin(A/2) sin(B/2) sin(C/2) in every triangle.
     quality = 8 * np.sin(angles / 2).prod(axis=1) if values is None else per_triangle("values", values, len(t))
     quality = np.nan_to_num(quality.astype(np.float64)).clip(0, 1)

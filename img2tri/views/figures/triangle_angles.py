@@ -10,12 +10,12 @@ import numpy as np
 from img2tri.arrays import Floats, Ints
 
 
-def corner_angles(vertices: Floats, triangles: Ints) -> Floats:
+def triangle_angles(vertices: Floats, triangles: Ints) -> Floats:
     """Return the angles (m, 3) in radians at the corners of triangles (m, 3) over vertices (n, 2).
 
     Examples
     --------
-    >>> np.rad2deg(corner_angles(np.array([[0, 0], [1, 0], [0, 1]]), np.array([[0, 1, 2]])).round(9)).round(3).tolist()
+    >>> np.rad2deg(triangle_angles(np.array([[0, 0], [1, 0], [0, 1]]), np.array([[0, 1, 2]])).round(9)).round(3).tolist()
     [[90.0, 45.0, 45.0]]
     """
     corners = vertices[triangles]
