@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from img2tri.arrays import Floats, Points, as_complex, cross
 from img2tri.shapes.place.area_exchange import exchange_areas
 from img2tri.shapes.place.constrained_smoothing import BoundedChains, restore_swept_areas, swept_areas, widest_fitting_spline
-from img2tri.shapes.place.corners import find_corners
 from img2tri.shapes.place.known_crossings import OutlineLevel, known_crossings
 from img2tri.shapes.place.node_placement import bend_to_nodes, meeting_places, open_wedges
+from img2tri.shapes.place.outline_corners import find_corners
 from img2tri.shapes.trace.crack_edges import CrackEdges
 from img2tri.shapes.trace.dual_edges import BOUND, DualEdges, cut_chains, lay_out, pixel_areas
 from img2tri.types import ColourMix, Frame, Outlines
