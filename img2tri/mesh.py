@@ -100,7 +100,7 @@ class TriangleMesh(MeshExports):
         import numpy as np
 
         from img2tri.arrays import unique_edges
-        from img2tri.shapes.periodic.paired_vertices import vertex_pairs
+        from img2tri.shapes.periodic.paired_mesh_vertices import vertex_pairs
 
         settings = self.origin.settings if self.origin else {}
         edges, sides = unique_edges(self.triangles)

@@ -9,7 +9,7 @@ import specimens
 
 from img2tri import mesh_image
 from img2tri.errors import MeshError, ParameterError
-from img2tri.shapes.periodic.paired_vertices import vertex_pairs
+from img2tri.shapes.periodic.paired_mesh_vertices import vertex_pairs
 
 
 def wrapped(labels):

@@ -10,5 +10,5 @@ both sides are meshed, crossing by crossing: each entry has its partner on the o
 
 side_chains      The option `periodic` checked; chains along opposite sides cut at the same places.
 paired_outlines  While outlines are simplified: opposite sides alike, the finer division of each stretch taken for both.
-paired_vertices  In the finished mesh: vertices on opposite sides divided alike, and which is whose partner.
+paired_mesh_vertices  In the finished mesh: vertices on opposite sides divided alike, and which is whose partner.
 """

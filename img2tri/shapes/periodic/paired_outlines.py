@@ -8,7 +8,7 @@ import numpy as np
 
 from img2tri.arrays import Bools, Floats, Ints
 from img2tri.errors import MeshError, bounded
-from img2tri.shapes.periodic.paired_vertices import Walls, divided_alike
+from img2tri.shapes.periodic.paired_mesh_vertices import Walls, divided_alike
 from img2tri.shapes.periodic.side_chains import DIRECTIONS
 from img2tri.shapes.simplify.simplification import Simplification
 from img2tri.shapes.simplify.tolerance import enforce_tolerance
@@ -121,7 +121,7 @@ class PeriodicPairs:
         return replace(s, kept=kept, offset=offset, snapped=of_both)
 
     def divided_alike(self, outlines: Outlines, vertices: Floats) -> Outlines:
-        """Divide two sides of coarse outlines alike, see `img2tri.shapes.periodic.paired_vertices.divided_alike`."""
+        """Divide two sides of coarse outlines alike, see `img2tri.shapes.periodic.paired_mesh_vertices.divided_alike`."""
         return divided_alike(outlines, vertices, self.walls)
 
     def check(self, outlines: Outlines, vertices: Floats) -> None:
