@@ -11,7 +11,7 @@ What all views start from:
     sets/             the named parts: left, outer_1, hole_1, bone__cartilage, and their numbers
     solver_cells      cells of one kind with all their named parts: what every format for solvers starts from
     tetrahedra        these wedges cut into tetrahedra
-    periodic_nodes    the nodes of periodic cells that are the same place
+    periodic_solver_nodes    the nodes of periodic cells that are the same place
     region_borders    which edges bound the mesh or part two regions
 
 Objects of libraries:

@@ -24,7 +24,7 @@ from img2tri.arrays import Bools, Floats
 from img2tri.errors import MeshError, choice
 from img2tri.views.formats.number_rows import whole_rows
 from img2tri.views.formats.solvers.plain_text import MARK, comment_lines, fitted_number, fitted_numbers, in_lines, set_identifiers
-from img2tri.views.objects.periodic_nodes import NodePairs, node_pairs
+from img2tri.views.objects.periodic_solver_nodes import NodePairs, node_pairs
 from img2tri.views.objects.sets.named_sets import boundary_rings
 from img2tri.views.objects.sets.numbers_in_files import Z_MIN
 from img2tri.views.objects.solver_cells import Cells

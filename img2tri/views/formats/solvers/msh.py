@@ -23,7 +23,7 @@ from img2tri.arrays import Floats, Ints
 from img2tri.errors import ParameterError
 from img2tri.views.formats.number_rows import exact_doubles, real_rows, whole_rows
 from img2tri.views.formats.solvers.plain_text import MARK, comment_lines, distinct_names, label_table, unquoted
-from img2tri.views.objects.periodic_nodes import node_pairs
+from img2tri.views.objects.periodic_solver_nodes import node_pairs
 from img2tri.views.objects.solver_cells import Cells
 
 # Gmsh's number of each type of element, and its order of the nodes where that is not the one of VTK.
