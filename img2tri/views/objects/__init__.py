@@ -3,7 +3,7 @@
 What all views start from:
 
     flat_or_extruded  checks the arrays; the triangles in space: flat at a height z, or the closed surface of a solid
-    side_twins        for each side of a triangle the same edge as its neighbour has it (half-edge twins)
+    half_edge_twins        for each side of a triangle the same edge as its neighbour has it (half-edge twins)
     extruded_surface  a plane mesh with a thickness, for printing: the closed surface of bottom, top and walls, all triangles
     body_per_region   one closed body for each region, for printing in several materials; a trimesh.Scene of them
     base_plate        a plate under the mesh that joins loose parts

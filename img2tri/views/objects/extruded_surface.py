@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from img2tri.arrays import Floats, Ints
 from img2tri.errors import ParameterError, finite
-from img2tri.views.objects.side_twins import previous_side, side_twins
+from img2tri.views.objects.half_edge_twins import half_edge_twins, previous_side
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +96,7 @@ def extrude(vertices: Floats, triangles: Ints, height: ArrayLike, *, z: float = 
     for storey, level in enumerate(levels.tolist()):
         mine = np.flatnonzero(roof >= storey)
         standing = triangles[mine]
-        twins = side_twins(standing, n)
+        twins = half_edge_twins(standing, n)
         corners, origin = _unpinched(standing, n, twins)
         if len(levels) > 1:
             used, inverse = np.unique(corners, return_inverse=True)

@@ -12,7 +12,7 @@ Beside the whole there are its pieces, where there are several: ``left_1``, ``le
 `img2tri.views.objects.sets.split_at_corners` for what is a piece and which comes first. Formats in which a facet has one tag give it
 that of the whole.
 
-An edge is a side of a triangle, numbered as in `img2tri.views.objects.side_twins`. A boundary ring is followed by going round its vertices
+An edge is a side of a triangle, numbered as in `img2tri.views.objects.half_edge_twins`. A boundary ring is followed by going round its vertices
 from twin to twin, so that where a mesh touches itself in one vertex only, its parts stay apart, as they are for the pixels.
 """
 
@@ -26,11 +26,11 @@ import numpy as np
 from img2tri.arrays import Bools, Floats, Ints
 from img2tri.errors import ParameterError
 from img2tri.views.objects.body_per_region import unique_names
+from img2tri.views.objects.half_edge_twins import half_edge_twins, next_side
 from img2tri.views.objects.sets.known_edges import with_known_edges
 from img2tri.views.objects.sets.numbers_in_files import FRAME, OUTER, file_numbers, set_tags
 from img2tri.views.objects.sets.split_at_corners import connected_pieces, outer_pieces
 from img2tri.views.objects.sets.triangles_by_label import grouped
-from img2tri.views.objects.side_twins import next_side, side_twins
 
 _ON_FRAME = 1e-9  # how far from the frame, relative to the mesh and its place, a vertex still lies on it
 
@@ -120,7 +120,7 @@ def named_sets(
     ([[2, 0]], 1011)
     """
     called = region_names(regions, names)
-    twins = side_twins(triangles, len(vertices))
+    twins = half_edge_twins(triangles, len(vertices))
     free, following, ring, area = _boundary(vertices, triangles, twins)
     start, end = triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
     a, b = start[free], end[free]
@@ -244,7 +244,7 @@ def boundary_rings(vertices: Floats, triangles: Ints) -> tuple[Ints, Ints, Float
     >>> boundary_rings(np.array([[0, 0], [2, 0], [0, 2.0]]), np.array([[0, 1, 2]]))
     (array([0, 1, 2]), array([0, 0, 0]), array([2.]))
     """
-    sides, _, ring, area = _boundary(vertices, triangles, side_twins(triangles, len(vertices)))
+    sides, _, ring, area = _boundary(vertices, triangles, half_edge_twins(triangles, len(vertices)))
     return sides, ring, area
 
 

@@ -22,7 +22,7 @@ from img2tri.arrays import Ints
 from img2tri.errors import MeshError
 
 
-def side_twins(triangles: Ints, n: int) -> Ints:
+def half_edge_twins(triangles: Ints, n: int) -> Ints:
     """Return for each side (3 m,) the one that runs the other way, or -1 where the mesh ends.
 
     Parameters
@@ -39,7 +39,7 @@ def side_twins(triangles: Ints, n: int) -> Ints:
 
     Examples
     --------
-    >>> side_twins(np.array([[0, 1, 2], [0, 2, 3]]), 4).tolist()
+    >>> half_edge_twins(np.array([[0, 1, 2], [0, 2, 3]]), 4).tolist()
     [-1, -1, 3, 2, -1, -1]
     """
     start, end = triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
