@@ -18,7 +18,7 @@ from img2tri.paper.contours import contour_polygon, external_contours
 from img2tri.paper.delaunay import centroid_filter, delaunay
 from img2tri.paper.grid import mask_filter, structured_grid
 from img2tri.paper.poisson_disk import DISTANCE_PER_EDGE, poisson_disk
-from img2tri.paper.recipes import structured_mesh, unstructured_mesh
+from img2tri.paper.structured_unstructured import structured_mesh, unstructured_mesh
 from img2tri.raster.labels.colours_to_gray import to_gray
 from img2tri.raster.labels.otsu_threshold import binarize
 from img2tri.raster.reading import read

@@ -174,7 +174,7 @@ def _with_paper_threshold(o: MeshOptions) -> SegmentOptions:
 
 def _paper(zones: Segmentation, picture: Picture, sizes: Sizes, o: MeshOptions) -> RecipeMesh:
     """Mesh by a recipe of the paper."""
-    from img2tri.paper.recipes import paper_mesh
+    from img2tri.paper.structured_unstructured import paper_mesh
 
     paper = of(PaperOptions, o)
     if o["recipe"] == "structured" and o["edge_length"] is None and paper["step"] is None:

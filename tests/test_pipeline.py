@@ -20,7 +20,7 @@ import img2tri
 from img2tri import FileError, ImageError, Img2triError, ParameterError, mesh_image
 from img2tri.options.mesh_options import RECIPES, SMOOTHINGS
 from img2tri.paper.defaults import PAPER_THRESHOLD
-from img2tri.paper.recipes import structured_mesh
+from img2tri.paper.structured_unstructured import structured_mesh
 
 DATA = Path(__file__).parents[1] / "data"
 DISC = specimens.disc(40, 15).astype(bool)

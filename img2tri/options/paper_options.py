@@ -10,7 +10,7 @@ from img2tri.options.option import Option
 
 
 class PaperOptions(TypedDict, total=False):
-    """Options of the paper's recipes only, see `img2tri.paper.recipes`; all follow from `edge_length` if left out."""
+    """Options of the paper's recipes only, see `img2tri.paper.structured_unstructured`; all follow from `edge_length` if left out."""
 
     step: Annotated[
         float | str | None,

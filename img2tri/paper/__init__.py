@@ -17,7 +17,7 @@ II-D, III-D   `create_mesh`                 `paper.delaunay.delaunay`
 II-E, III-E   `valid_triangles`             `paper.delaunay.centroid_filter`
 II-E, III-E   `find_neighbors`              `triangles.tools.topology.adjacency`
 II-E, III-E   `laplacian_smoothing`         `triangles.tools.laplacian_smoothing.uniform`
-III-C         `put_together`                `paper.recipes.unstructured_mesh`; without contours `paper.recipes.structured_mesh`
+III-C         `put_together`                `paper.structured_unstructured.unstructured_mesh`; without contours `paper.structured_unstructured.structured_mesh`
 ============  ============================  ==========================================================================
 
 Three of them are not in this house, since the default recipe needs them too. What differs from the paper, and why, is in the README;

@@ -17,7 +17,7 @@ from benchmarks.shapes import blob
 
 from img2tri.paper.contours import contour_polygon, external_contours
 from img2tri.paper.poisson_disk import DISTANCE_PER_EDGE, poisson_disk
-from img2tri.paper.recipes import paper_mesh, unstructured_mesh
+from img2tri.paper.structured_unstructured import paper_mesh, unstructured_mesh
 from img2tri.types import Frame
 
 pytestmark = pytest.mark.benchmark

@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 
 from img2tri.errors import ImageError, ParameterError
 from img2tri.paper.contours import contour_polygon, external_contours
-from img2tri.paper.recipes import paper_mesh, structured_mesh, unstructured_mesh
+from img2tri.paper.structured_unstructured import paper_mesh, structured_mesh, unstructured_mesh
 from img2tri.triangles.tools.laplacian_smoothing import uniform
 from img2tri.types import Frame
 
