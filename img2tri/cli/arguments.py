@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from img2tri import __version__
-from img2tri.cli.app_command import add_app
+from img2tri.cli.commands.app_command import add_app
 from img2tri.cli.commands.tiles_command import add_tiles
 from img2tri.cli.option_arguments import add_mesh_options
 from img2tri.cli.save_arguments import add_save_options

@@ -16,8 +16,8 @@ from contextlib import closing
 from dataclasses import replace
 from functools import partial
 
-from img2tri.cli.app_command import run_app
 from img2tri.cli.arguments import parse
+from img2tri.cli.commands.app_command import run_app
 from img2tri.cli.commands.tiles_command import run_tiles
 from img2tri.cli.file_names import folders, images_typed, jobs_of, mesh_options, suffix_of_stdin
 from img2tri.cli.job import Job
