@@ -10,8 +10,8 @@
                                          summary_table      a row for each image, and which are whole already
                                          wording            messages in the words of the command line
 
-`job` has the records these hand to each other, `stdin_stdout` has stdin and stdout as files; `app_command` starts the
-app; `commands` has ``img2tri tiles``; `program` puts the parts together.
+`job` has the records these hand to each other, `stdin_stdout` has stdin and stdout as files; `commands` has ``img2tri tiles`` and
+``img2tri app``; `program` puts the parts together.
 """
 
 from __future__ import annotations

@@ -17,12 +17,13 @@ II-D, III-D   `create_mesh`                 `paper.delaunay.delaunay`
 II-E, III-E   `valid_triangles`             `paper.delaunay.centroid_filter`
 II-E, III-E   `find_neighbors`              `triangles.tools.topology.adjacency`
 II-E, III-E   `laplacian_smoothing`         `triangles.tools.laplacian_smoothing.uniform`
-III-C         `put_together`                `paper.structured_unstructured.unstructured_mesh`; without contours `paper.structured_unstructured.structured_mesh`
+III-C         `put_together`                `paper.structured_unstructured.unstructured_mesh`; without contours
+                                            `paper.structured_unstructured.structured_mesh`
 ============  ============================  ==========================================================================
 
 Three of them are not in this house, since the default recipe needs them too. What differs from the paper, and why, is in the README;
 `examples/02_paper_step_by_step.py` goes this way with pictures, and the tests hold each function against the listing as printed.
 
-The modules, in that order: grid, contours, boundary_points, poisson_disk, active_cells, delaunay, recipes. The values the paper
-chooses (T = 240, a grid of 10 px) are in defaults.
+The modules, in that order: grid, contours, boundary_points, poisson_disk, active_cells, delaunay, structured_unstructured. The values
+the paper chooses (T = 240, a grid of 10 px) are in defaults.
 """

@@ -2,7 +2,7 @@
 
 byte_sources      where the bytes come from: a path, or a file that is open already
 format_detection  `decode`: which format a file has, told by its first bytes or its suffix, and the decoder for it; damaged files
-decoded           what every decoder returns, and checks first: is there such a page, are there too many pixels
+decoded_image     what every decoder returns, and checks first: is there such a page, are there too many pixels
 image_names       folders and patterns -> names of images
 pillow_images     PNG, JPEG, GIF, BMP, WebP, most TIFFs and all else that Pillow knows
 windows_icons     the size of the images in an icon, checked before Pillow decodes them

@@ -8,7 +8,7 @@ both sides are meshed, crossing by crossing: each entry has its partner on the o
       o           o
       2           2        numbers: junctions with outlines that reach the frame
 
-side_chains      The option `periodic` checked; chains along opposite sides cut at the same places.
-paired_outlines  While outlines are simplified: opposite sides alike, the finer division of each stretch taken for both.
+side_chains           The option `periodic` checked; chains along opposite sides cut at the same places.
+paired_outlines       While outlines are simplified: opposite sides alike, the finer division of each stretch taken for both.
 paired_mesh_vertices  In the finished mesh: vertices on opposite sides divided alike, and which is whose partner.
 """

@@ -6,7 +6,7 @@ placement              Dual edges -> dense outlines, by the files below.
 known_crossings        What an image says of the places of its outlines -> where each crossing lies, by one of the next two.
 iso_crossings          Gray values -> where on its dual edge each crossing lies, and how surely.
 colour_crossings       Pixels mixed of two flat colours -> where each crossing lies, and how surely.
-corners                Where an outline has a corner, and where exactly it is.
+outline_corners        Where an outline has a corner, and where exactly it is.
 constrained_smoothing  Each crossing onto the widest smoothing spline that fits its bounds; then each chain to its area.
 area_exchange          Regions that lack area get it by whatever chain of theirs has room.
 node_placement         Nodes where the chains that meet there lead, and chains bent to end at their nodes.

@@ -1,9 +1,9 @@
 """A mesh as a picture, by matplotlib or as a small SVG.
 
-plot            A plane mesh, its image and its quality -> a `matplotlib` Figure, and if wanted a PNG, SVG or PDF file.
-figure_parts    The parts of a figure: the place for the mesh and the one for its quality, and what is drawn in either.
-notebook        A mesh in a notebook: vertices, triangles, regions -> a small SVG, and a piece of HTML with a line of numbers below it.
-region_colours  Colours for regions: a count -> that many colours, each well apart from those before it.
-image_png       An array -> the bytes of a PNG file.
-triangle_angles   The angle at each corner of each triangle, for the histogram of a figure.
+plot             A plane mesh, its image and its quality -> a `matplotlib` Figure, and if wanted a PNG, SVG or PDF file.
+figure_parts     The parts of a figure: the place for the mesh and the one for its quality, and what is drawn in either.
+notebook         A mesh in a notebook: vertices, triangles, regions -> a small SVG, and a piece of HTML with a line of numbers below it.
+region_colours   Colours for regions: a count -> that many colours, each well apart from those before it.
+image_png        An array -> the bytes of a PNG file.
+triangle_angles  The angle at each corner of each triangle, for the histogram of a figure.
 """

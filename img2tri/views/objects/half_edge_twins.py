@@ -1,4 +1,4 @@
-r"""The neighbours of the sides of a triangle mesh: triangles -> for each side its twin, the same edge as the other triangle has it.
+r"""Half-edges and their twins: triangles -> for each side of a triangle the same edge as the other triangle has it.
 
 Side 3 t + k is side k of triangle t, from corner k to the next. A directed side is one integer, so its twin is the integer of the
 opposite side; all are found by one sort::

@@ -130,7 +130,7 @@ def page(
         "body": filled(resource("body.html"), fill),
         "data": "\n".join(f'<script type="{kind}" id="{name}">{text}</script>' for name, (kind, text) in data.items() if text),
         "nonce": "",
-        "script": "".join(map(resource, (*SCRIPTS, "alone.js"))),
+        "script": "".join(map(resource, (*SCRIPTS, "standalone.js"))),
     }
     return filled(resource("page.html"), parts)
 

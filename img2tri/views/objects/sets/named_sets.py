@@ -12,8 +12,8 @@ Beside the whole there are its pieces, where there are several: ``left_1``, ``le
 `img2tri.views.objects.sets.split_at_corners` for what is a piece and which comes first. Formats in which a facet has one tag give it
 that of the whole.
 
-An edge is a side of a triangle, numbered as in `img2tri.views.objects.half_edge_twins`. A boundary ring is followed by going round its vertices
-from twin to twin, so that where a mesh touches itself in one vertex only, its parts stay apart, as they are for the pixels.
+An edge is a side of a triangle, numbered as in `img2tri.views.objects.half_edge_twins`. A boundary ring is followed by going round its
+vertices from twin to twin, so that where a mesh touches itself in one vertex only, its parts stay apart, as they are for the pixels.
 """
 
 from __future__ import annotations

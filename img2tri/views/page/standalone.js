@@ -1,6 +1,6 @@
 "use strict";
 /** The page by itself: all is in it. What the address may say after its #: place=1, fill=angle, theme=dark, image=0. */
-async function alone() {
+async function standalone() {
   const page = new Page(document), { viewer } = page, picture = document.getElementById("picture");
   const mesh = new Mesh(unpack(await inflate(document.getElementById("mesh").textContent)));
   page.put({});
@@ -20,4 +20,4 @@ async function alone() {
   addEventListener("hashchange", addressed);
 }
 
-alone();
+standalone();
