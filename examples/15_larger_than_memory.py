@@ -17,7 +17,7 @@ from distributed import Client, LocalCluster
 from matplotlib.figure import Figure
 
 from img2tri import mesh_tiles
-from img2tri.tiles.save_parts import load_tiles
+from img2tri.tiles.parts.load_parts import load_tiles
 
 
 def main(out: str | Path = "out") -> dict[str, float]:

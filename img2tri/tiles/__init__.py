@@ -9,8 +9,8 @@
     mesh_block         the work of one task: a block is meshed with what is around it, and fitted to the pieces that are there
     seams              two neighbours fitted to each other: pieces, what is merged, gaps that are filled
     piece_files        pieces on disk, whole or not there, from which an interrupted run goes on; or in memory
-    vertex_numbers     the proof that each seam edge has one partner, and from it the numbers of vertices in the whole mesh
-    save_parts         the mesh in files of parts: zarr, .pvtu, .vtkhdf; and read back
+    parts              the mesh in files of parts: zarr, .pvtu, .vtkhdf, each written by a worker; and read back
+    run_tasks          a function called for each block, in this process or on a Dask cluster
 
 Two neighbours see the same pixels around their common border, but not the same image, and their meshes differ. The first one stays. Of the
 other the triangles near its border give way, outlines are spliced, and the gap is filled between the two rims, which stay as they are to

@@ -16,8 +16,8 @@ from img2tri.options.all_options import MeshOptions
 from img2tri.raster.labels.segmentation import Segmentation
 from img2tri.tiles.block_plan import Plan, planned, refuse_by_blocks
 from img2tri.tiles.mesh_block import mesh_block
+from img2tri.tiles.parts.vertex_numbers import Seam, global_numbers, numbered_vertices, seam_of
 from img2tri.tiles.piece_files import PiecesInMemory, load_piece
-from img2tri.tiles.vertex_numbers import Seam, global_numbers, numbered_vertices, seam_of
 from img2tri.tiles.window_regions import cut_out
 from img2tri.types import Frame, RecipeMesh
 
@@ -60,11 +60,11 @@ def _joined(plan: Plan, store: PiecesInMemory) -> tuple[Points, Ints, Ints, int]
     """Return the vertices (complex), triangles and labels of all pieces, each vertex once, and the number of edges on seams."""
     pieces = [load_piece(store, plan, cell)[0] for cell in plan.cells()]
     seams: list[Seam] = [seam_of(piece, plan, cell) for piece, cell in zip(pieces, plan.cells(), strict=True)]
-    numbers, total = numbered_vertices(seams)
+    numbering, total = numbered_vertices(seams)
     vertices = np.zeros(total, np.complex128)
     triangles = []
-    for piece, seam, shared in zip(pieces, seams, numbers, strict=True):
-        number = global_numbers(seam.count, seam.numbers, *shared)
+    for piece, its in zip(pieces, numbering, strict=True):
+        number = global_numbers(its)
         vertices[number] = piece.vertices
         triangles.append(number[piece.triangles])
     regions = np.concatenate([piece.regions for piece in pieces])

@@ -20,6 +20,7 @@ from img2tri.tiles.seams.both_meshes import Territory
 from img2tri.tiles.seams.join_blocks import merge
 from img2tri.tiles.seams.piece_seams import Piece, SeamError, join_pieces
 from img2tri.tiles.window_regions import WindowRegions
+from img2tri.triangles.smallest_tangents import smallest_angles
 from img2tri.triangles.tools.topology import curve_edges
 from img2tri.types import Frame, Outlines
 
@@ -91,6 +92,8 @@ def _fitting(plan: Plan, zones: WindowRegions, store: PieceStore, cell: Cell) ->
             "scale": scale,
             "replaced": int(replaced.sum()),
             "distance": distance,
+            "n_triangles": len(piece.triangles),
+            "smallest_angle": float(smallest_angles(piece.vertices, piece.triangles).min(initial=180.0)),
             **_pixels(window, plan, cell, rows, columns),
         }
         return piece, lost, facts

@@ -86,6 +86,8 @@ class PieceFolder:
         arrays["facts"] = np.frombuffer(json.dumps(facts, sort_keys=True).encode(), np.uint8)
         arrays |= {_lost_name(other): numbers for other, numbers in lost.items()}
         np.savez(buffer, **arrays)
+        # For people: what a run has done so far can be looked at.
+        write(self.folder / f"report-{cell[0]}-{cell[1]}.json", json.dumps(facts, sort_keys=True, indent=2).encode())
         write(self._path(cell), buffer.getvalue())
 
     def piece(self, cell: Cell) -> Piece:

@@ -10,7 +10,7 @@ import pytest
 from scipy import ndimage
 
 from img2tri import mesh_tiles
-from img2tri.tiles.save_parts import load_tiles
+from img2tri.tiles.parts.load_parts import load_tiles
 
 distributed = pytest.importorskip("distributed")
 

@@ -12,7 +12,7 @@ from scipy import ndimage
 from img2tri import FileError, mesh_tiles
 from img2tri.cli import main
 from img2tri.tiles import block_plan
-from img2tri.tiles.save_parts import load_tiles
+from img2tri.tiles.parts.load_parts import load_tiles
 
 OPTIONS = {"edge_length": 4.0}
 

@@ -13,7 +13,7 @@ from specimens import MASKS, polycrystal
 from img2tri import FileError, ImageError, ParameterError, mesh_image, mesh_tiles
 from img2tri.certificate.report import certify
 from img2tri.tiles import block_plan, mesh_block
-from img2tri.tiles.save_parts import load_tiles
+from img2tri.tiles.parts.load_parts import load_tiles
 
 
 def blobs(n=400, sigma=8.0, seed=0):

@@ -53,7 +53,28 @@ def seam_of(piece: Piece, plan: Plan, cell: Cell) -> Seam:
     return Seam(len(piece.vertices), len(piece.triangles), numbers, piece.vertices[numbers], np.searchsorted(numbers, piece.seam))
 
 
-def numbered_vertices(seams: Sequence[Seam]) -> tuple[list[tuple[int, Ints]], int]:
+@dataclass(frozen=True, eq=False)
+class Numbering:
+    """The numbers of the vertices of a piece in the whole mesh.
+
+    Attributes
+    ----------
+    count, triangles
+        How many vertices and triangles the piece has.
+    local, numbers
+        (k,) int64, its vertices that others share or may share, and their numbers in the whole mesh.
+    first
+        The number of the first of its own vertices, which follow each other; what is less belongs to others.
+    """
+
+    count: int
+    triangles: int
+    local: Ints
+    numbers: Ints
+    first: int
+
+
+def numbered_vertices(seams: Sequence[Seam]) -> tuple[list[Numbering], int]:
     """Give the vertices of all pieces numbers, each one.
 
     Parameters
@@ -63,9 +84,8 @@ def numbered_vertices(seams: Sequence[Seam]) -> tuple[list[tuple[int, Ints]], in
 
     Returns
     -------
-    numbers : list of (first, shared)
-        For each piece the number of the first of its own vertices, which follow each other, and for each vertex on its seam the number,
-        or -1 if it is its own.
+    numbering : list of Numbering
+        Of each piece.
     total : int
 
     Raises
@@ -84,14 +104,13 @@ def numbered_vertices(seams: Sequence[Seam]) -> tuple[list[tuple[int, Ints]], in
     result, total, known = [], 0, np.full(len(places), -1)
     for k, seam in enumerate(seams):
         mine, at = own[first[k] : first[k + 1]], vertex[first[k] : first[k + 1]]
-        shared = ~mine
         # Its own vertices are numbered in their order, those of others left out.
         before = np.zeros(seam.count + 1, np.int64)
-        before[seam.numbers[shared] + 1] = 1
+        before[seam.numbers[~mine] + 1] = 1
         rank = seam.numbers - np.cumsum(before)[seam.numbers]
         known[at[mine]] = total + rank[mine]
-        result.append((total, np.where(shared, known[at], -1)))
-        total += seam.count - int(shared.sum())
+        result.append(Numbering(seam.count, seam.triangles, seam.numbers, known[at], total))
+        total += seam.count - int((~mine).sum())
     return result, total
 
 
@@ -107,10 +126,11 @@ def _check(places: Points, edges: Ints) -> None:
         )
 
 
-def global_numbers(count: int, numbers: Ints, first: int, shared: Ints) -> Ints:
-    """Return the number in the whole mesh of each vertex (count,) of a piece; see `numbered_vertices`."""
-    own = np.ones(count, bool)
-    own[numbers[shared >= 0]] = False
-    result = np.cumsum(own) - 1 + first
-    result[numbers[shared >= 0]] = shared[shared >= 0]
+def global_numbers(one: Numbering) -> Ints:
+    """Return the number in the whole mesh of each vertex (count,) of a piece."""
+    shared = one.numbers < one.first
+    own = np.ones(one.count, bool)
+    own[one.local[shared]] = False
+    result = np.cumsum(own) - 1 + one.first
+    result[one.local[shared]] = one.numbers[shared]
     return result

@@ -1,0 +1,85 @@
+"""A function called for each of many tasks, in this process or by the workers of a Dask cluster.
+
+Each task is one entry in the cluster's graph, under a name that its dashboard shows. What all tasks have in common is sent to each worker
+once. A task whose worker is lost is done again by another.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+from uuid import uuid4
+
+from img2tri.errors import FileError, Img2triError
+
+ROUNDS = 3  # how often tasks are sent again that a cluster has forgotten, as what they need was lost with a worker
+
+
+def done(
+    client: Any,
+    stage: str,
+    function: Callable[..., Any],
+    tasks: Mapping[str, Any],
+    shared: tuple[Any, ...],
+    share: Callable[[float], object],
+) -> Iterator[tuple[str, Any]]:
+    """Call a function for each task; yield the name of the task and what the function returned, as it comes.
+
+    Parameters
+    ----------
+    client
+        Of a Dask cluster; None: this process.
+    stage
+        What is being done, for the dashboard and errors.
+    function
+        Called with all of `shared` and the task.
+    tasks
+        By name.
+    share
+        Told the fraction done.
+
+    Raises
+    ------
+    Img2triError
+        What the function raised; FileError if a task was given up by the cluster.
+    """
+    if client is None:
+        for k, (name, task) in enumerate(tasks.items()):
+            share(k / len(tasks))
+            yield name, function(*shared, task)
+        return
+    left = dict(tasks)
+    for _ in range(ROUNDS):
+        for name, result in _round(client, stage, function, left, shared):
+            share(1 - len(left) / len(tasks))
+            del left[name]
+            yield name, result
+        if not left:
+            return
+    raise FileError(f"{stage} {', '.join(list(left)[:3])}: the cluster has forgotten this {ROUNDS} times; what is done stays")
+
+
+def _round(
+    client: Any, stage: str, function: Callable[..., Any], tasks: Mapping[str, Any], shared: tuple[Any, ...]
+) -> Iterator[tuple[str, Any]]:
+    """Send tasks once, and yield the results of those that were not forgotten."""
+    from distributed import as_completed
+
+    kept, once = client.scatter(shared, broadcast=True, hash=False), uuid4().hex
+    futures = {client.submit(_call, function, kept, task, key=f"{stage}-{name}-{once}", pure=False): name for name, task in tasks.items()}
+    try:
+        for future in as_completed(futures):
+            if future.cancelled():
+                continue
+            try:
+                yield futures[future], future.result()
+            except Img2triError:
+                raise
+            except Exception as problem:  # a worker that is lost again and again, or a cluster that closes
+                raise FileError(f"{stage} {futures[future]}: {type(problem).__name__}: {problem}; what is done stays") from problem
+    finally:
+        client.cancel(list(futures))
+
+
+def _call(function: Callable[..., Any], shared: tuple[Any, ...], task: Any) -> Any:
+    return function(*shared, task)

@@ -1,0 +1,103 @@
+"""Parts in files: whoever writes them, whenever, once or twice, the bytes are the same; each has its report."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from scipy import ndimage
+
+from img2tri import mesh_tiles
+from img2tri.tiles import block_plan, run_tasks
+from img2tri.tiles import mesh_tiles as module
+from img2tri.tiles.parts.part_files import FORMATS
+
+MASK = ndimage.gaussian_filter(np.random.default_rng(0).standard_normal((200, 220)), 8) > 0
+
+
+@pytest.fixture(autouse=True)
+def small(monkeypatch):
+    """Four blocks, each a part."""
+    monkeypatch.setattr(block_plan, "BLOCK_SIDE", 128)
+
+
+def files(folder):
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+@pytest.mark.parametrize("suffix", FORMATS)
+def test_the_bytes_do_not_depend_on_who_writes_when_and_how_often(suffix, tmp_path, monkeypatch):
+    (tmp_path / "one").mkdir()
+    (tmp_path / "other").mkdir()
+    mesh_tiles(MASK, tmp_path / "one" / f"mesh{suffix}", tile=128, edge_length=4.0)
+
+    def backwards(client, stage, function, tasks, shared, share):
+        if stage == "save":  # by workers of which one is thought lost, but was only slow
+            tasks = dict(reversed(tasks.items()))
+            list(run_tasks.done(client, stage, function, tasks, shared, share))
+        return run_tasks.done(client, stage, function, tasks, shared, share)
+
+    monkeypatch.setattr(module, "done", backwards)
+    mesh_tiles(MASK, tmp_path / "other" / f"mesh{suffix}", tile=128, edge_length=4.0)
+    one, other = files(tmp_path / "one"), files(tmp_path / "other")
+    assert len(one) >= 1
+    assert one == other
+
+
+def test_each_part_has_its_report_and_so_has_each_block_before_the_end(tmp_path):
+    import zarr
+
+    seen = {}
+
+    def look(stage, _):
+        if stage == "seams":
+            found = (tmp_path / ".mesh.zarr.work").glob("report-*.json")
+            seen.update({path.name: json.loads(path.read_text()) for path in found})
+
+    made = mesh_tiles(MASK, tmp_path / "mesh.zarr", tile=128, edge_length=4.0, progress=look)
+    assert sorted(seen) == ["report-0-0.json", "report-0-1.json", "report-1-0.json", "report-1-1.json"]
+    assert all(report["smallest_angle"] >= 30 and report["distance"] <= 0.5 for report in seen.values())
+    parts = [dict(part.attrs) for _, part in zarr.open_group(made.path, mode="r")["parts"].groups()]
+    assert len(parts) == 4
+    assert sum(part["n_triangles"] for part in parts) == made.n_triangles
+    assert min(part["smallest_angle"] for part in parts) == made.report["smallest_angle"]
+
+
+class Forgetful:
+    """A client of a cluster that forgets some of what it is asked for the first time."""
+
+    def __init__(self):
+        self.asked, self.keys = 0, set()
+
+    def scatter(self, shared, **_):
+        return shared
+
+    def submit(self, function, *given, key, **_):
+        assert key not in self.keys
+        self.keys.add(key)
+        self.asked += 1
+        return Answer(function(*given), lost=self.asked == 2)
+
+    def cancel(self, futures):
+        pass
+
+
+class Answer:
+    def __init__(self, value, *, lost):
+        self.value, self.lost = value, lost
+
+    def cancelled(self):
+        return self.lost
+
+    def result(self):
+        return self.value
+
+
+def test_what_a_cluster_forgets_is_asked_for_again(monkeypatch):
+    distributed = pytest.importorskip("distributed")
+    monkeypatch.setattr(distributed, "as_completed", iter)
+    client = Forgetful()
+    found = dict(run_tasks.done(client, "double", lambda factor, n: factor * n, {"a": 1, "b": 2, "c": 3}, (2,), lambda _: None))
+    assert found == {"a": 2, "b": 4, "c": 6}
+    assert client.asked == 4
