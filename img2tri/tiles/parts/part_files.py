@@ -22,7 +22,7 @@ from img2tri.tiles.parts.vtkhdf_file import VtkhdfFile
 from img2tri.views.formats.xml_text import xml_quoted
 
 FORMATS = (".zarr", ".pvtu", ".vtkhdf")
-ARRAYS = ("vertices", "triangles", "regions", "numbers", "blocks")
+PART_ARRAYS = ("vertices", "triangles", "regions", "numbers", "blocks")
 
 
 class PartFiles(Protocol):
@@ -64,7 +64,7 @@ class ZarrParts:
 
         made = self.scratch / f"{part.name}-{uuid4().hex}"
         group = zarr.open_group(made, mode="w")
-        for name in ARRAYS:
+        for name in PART_ARRAYS:
             array = getattr(part, name)
             group.create_array(name, data=array) if array.size else group.create_array(name, shape=array.shape, dtype=array.dtype)
         group.attrs.update(in_json(facts))

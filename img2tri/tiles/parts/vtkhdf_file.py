@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 TRIANGLE = 5  # VTK's number of this kind of cell
 # Name: type, columns (0: no second axis), and of which of (parts, vertices, triangles) so many rows each.
-ARRAYS: dict[str, tuple[type, int, str, int]] = {
+LAYOUT: dict[str, tuple[type, int, str, int]] = {
     "Points": (np.float64, 3, "vertices", 1),
     "PointData/number": (np.int64, 0, "vertices", 1),
     "Connectivity": (np.int64, 0, "triangles", 3),
@@ -54,7 +54,7 @@ class VtkhdfFile:
             root.attrs.create("Type", b"UnstructuredGrid", dtype=h5py.string_dtype("ascii", 16))
             for name, counts in {"NumberOfPoints": vertices, "NumberOfCells": triangles, "NumberOfConnectivityIds": 3 * triangles}.items():
                 root.create_dataset(name, data=counts, track_times=False)
-            for name, (dtype, columns, of, times) in ARRAYS.items():
+            for name, (dtype, columns, of, times) in LAYOUT.items():
                 _reserved(root, name, (times * total[of], *([columns] if columns else [])), dtype)
             # Each part has one offset more than it has triangles.
             _reserved(root, "Offsets", (total["triangles"] + len(sizes),), np.int64)
@@ -74,9 +74,9 @@ class VtkhdfFile:
             "CellData/region": part.regions,
         }
         with h5py.File(self.path, "r", locking=False) as file:
-            at = {name: file["VTKHDF"][name].id.get_offset() for name in (*ARRAYS, "Offsets")}
+            at = {name: file["VTKHDF"][name].id.get_offset() for name in (*LAYOUT, "Offsets")}
         with open(self.path, "r+b") as out:
-            for name, (dtype, columns, of, times) in ARRAYS.items():
+            for name, (dtype, columns, of, times) in LAYOUT.items():
                 row = np.dtype(dtype).itemsize * max(1, columns)
                 _write_at(out.fileno(), at[name] + row * times * first[of], values[name].astype(dtype))
             _write_at(out.fileno(), at["Offsets"] + 8 * (triangles + parts), np.arange(0, 3 * m + 1, 3, dtype=np.int64))

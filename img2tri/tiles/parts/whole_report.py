@@ -14,10 +14,10 @@ from img2tri.tiles.seams.piece_seams import Piece, Sides
 from img2tri.triangles.smallest_tangents import smallest_angles
 
 MOST_AREA_ERROR, FEW_PIXELS = 0.01, 16  # of the whole, but of no fewer pixels, as in the certificate of a mesh in memory
-Facts = dict[str, Any]
+Figures = dict[str, Any]
 
 
-def block_facts(piece: Piece, plan: Plan) -> Facts:
+def block_facts(piece: Piece, plan: Plan) -> Figures:
     """Count, and measure angles (degrees) and areas (world units) of the piece of a block, all its neighbours being there."""
     a, b, c = piece.vertices[piece.triangles].T
     area = ((b - a).conj() * (c - a)).imag / 2 * plan.frame.pixel**2
@@ -32,7 +32,7 @@ def block_facts(piece: Piece, plan: Plan) -> Facts:
     }
 
 
-def added_up(blocks: Sequence[Facts]) -> Facts:
+def added_up(blocks: Sequence[Figures]) -> Figures:
     """Add up what `block_facts` has found."""
     areas: dict[int, float] = {}
     for block in blocks:
@@ -42,7 +42,7 @@ def added_up(blocks: Sequence[Facts]) -> Facts:
     return sums | {"smallest_angle": min(block["smallest_angle"] for block in blocks), "areas": areas}
 
 
-def whole_report(plan: Plan, source: str, blocks: Sequence[Facts], meshed: Sequence[Facts], vertices: int, seam_edges: int) -> Facts:
+def whole_report(plan: Plan, source: str, blocks: Sequence[Figures], meshed: Sequence[Figures], vertices: int, seam_edges: int) -> Figures:
     """Add up what is known, compare the whole with the image, and warn of each promise that is not kept.
 
     Parameters
@@ -55,7 +55,7 @@ def whole_report(plan: Plan, source: str, blocks: Sequence[Facts], meshed: Seque
         Counts in the whole mesh.
     """
     of_mesh = added_up(meshed)
-    report: Facts = {
+    report: Figures = {
         "options": plain(plan.options, field=plan.lengths),
         "level": plan.level,
         "source": source,
@@ -77,7 +77,7 @@ def whole_report(plan: Plan, source: str, blocks: Sequence[Facts], meshed: Seque
     return report | {"warnings": _warnings(report, plan, pixels)}
 
 
-def _warnings(report: Facts, plan: Plan, pixels: int) -> list[str]:
+def _warnings(report: Figures, plan: Plan, pixels: int) -> list[str]:
     """One line for each promise that is not kept."""
     warnings = []
     if "euler" in report and report["euler"]["mesh"] != report["euler"]["image"]:
