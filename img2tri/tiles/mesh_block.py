@@ -20,7 +20,7 @@ from img2tri.tiles.seams.both_meshes import Territory
 from img2tri.tiles.seams.join_blocks import merge
 from img2tri.tiles.seams.piece_seams import Piece, SeamError, join_pieces
 from img2tri.tiles.window_regions import WindowRegions
-from img2tri.triangles.smallest_tangents import smallest_angles
+from img2tri.triangles.min_angle_tangents import smallest_angles
 from img2tri.triangles.tools.topology import curve_edges
 from img2tri.types import Frame, Outlines
 

@@ -11,7 +11,7 @@ import numpy as np
 from img2tri.options.all_options import plain
 from img2tri.tiles.block_plan import Plan
 from img2tri.tiles.seams.piece_seams import Piece, Sides
-from img2tri.triangles.smallest_tangents import smallest_angles
+from img2tri.triangles.min_angle_tangents import smallest_angles
 
 MOST_AREA_ERROR, FEW_PIXELS = 0.01, 16  # of the whole, but of no fewer pixels, as in the certificate of a mesh in memory
 Figures = dict[str, Any]
