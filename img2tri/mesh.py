@@ -146,7 +146,8 @@ class TriangleMesh(MeshExports):
         tolerance, guard
             How far a vertex of the boundary may move, as a length. Whether no triangle may be turned over, nor the worst angle fall.
         """
-        from img2tri.triangles.tools.laplacian_smoothing import cotangent, uniform
+        from img2tri.triangles.tools.cotangent_smoothing import cotangent
+        from img2tri.triangles.tools.laplacian_smoothing import uniform
 
         choice("method", method, ("uniform", "cotangent"))
         within = self.frame.length("tolerance", tolerance)

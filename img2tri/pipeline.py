@@ -20,7 +20,7 @@ from img2tri.options.signature_docs import with_options
 from img2tri.paper.defaults import GRID_STEP, PAPER_SMOOTHING, PAPER_THRESHOLD
 from img2tri.raster.in_memory.image_hash import image_hash
 from img2tri.raster.labels.cropping import crop
-from img2tri.raster.labels.label_map_warnings import label_map_warnings
+from img2tri.raster.labels.meshing_warnings import meshing_warnings
 from img2tri.raster.labels.otsu_threshold import Level
 from img2tri.raster.labels.rgb_to_labels import colour_names, label_colours
 from img2tri.raster.labels.segmentation import Segmentation, segment, without_specks
@@ -141,7 +141,7 @@ def _teller(progress: Callable[[str, float], None] | None) -> Callable[[str, flo
 
 def _forewarn(zones: Segmentation, frame: Frame, o: MeshOptions, tell: Callable[[str, float], None]) -> list[str]:
     """Tell before the work what is hardly meant: as warnings, to who follows the progress, and in the report."""
-    told = list(label_map_warnings(zones, connectivity=o["connectivity"], asked=_asked_triangles(zones, frame, o)))
+    told = list(meshing_warnings(zones, connectivity=o["connectivity"], asked=_asked_triangles(zones, frame, o)))
     for warning in told:
         tell(str(warning), 0.1)
         warnings.warn(warning, stacklevel=3)

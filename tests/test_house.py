@@ -26,7 +26,7 @@ MAPS = sorted({path.parent for path in FILES})
 ORDER = [
     {"errors"},
     {"arrays"},
-    {"types", "cells"},
+    {"types", "cell_lists", "triangle_angles"},
     set(ROOMS),
     {"paper"},
     {"recipes", "certificate"},

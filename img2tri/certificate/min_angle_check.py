@@ -11,13 +11,13 @@ from img2tri.triangles.tools.quality_summary import measure
 ROUNDED = 1e-6  # relative: tangents that differ by less may be those of equal angles
 
 
-def small_angles(vertices: Floats, triangles: Ints, below: float) -> tuple[Ints, Floats]:
+def angles_below(vertices: Floats, triangles: Ints, below: float) -> tuple[Ints, Floats]:
     """Return the triangles (k,) that may have the smallest angle of all, or one below so many degrees; and their smallest angles (k,).
 
     Examples
     --------
     >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 3.0]])
-    >>> which, angles = small_angles(square, np.array([[0, 1, 2], [0, 2, 3]]), 30)
+    >>> which, angles = angles_below(square, np.array([[0, 1, 2], [0, 2, 3]]), 30)
     >>> which.tolist(), angles.round(2).tolist()
     ([1], [26.57])
     """

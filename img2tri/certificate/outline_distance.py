@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from img2tri.arrays import Floats, Ints, Points, as_complex, as_rows, cross, runs
-from img2tri.cells import cells, pairs_across
+from img2tri.cell_lists import cells, pairs_across
 from img2tri.errors import MeshError
 from img2tri.shapes.simplify.clearance import to_segment
 from img2tri.types import Provenance

@@ -18,7 +18,7 @@ import numpy as np
 
 from img2tri.arrays import Floats, Ints
 from img2tri.certificate.edge_sides import EdgeSides
-from img2tri.certificate.min_angle_check import small_angles
+from img2tri.certificate.min_angle_check import angles_below
 from img2tri.certificate.outline_distance import SegmentSet, hausdorff, wrong_pixels
 from img2tri.certificate.region_areas import AREA_TOLERANCE, displaced, moments, region_areas, region_numbers, regions_off
 from img2tri.certificate.topology_and_defects import DEFECTS, defects, neighbours, topology
@@ -174,7 +174,7 @@ def certify(
     tell("pixels", 0.3)
     wrong = wrong_pixels(plane, triangles, number, curves, origin)
     tell("angles", 0.5)
-    worst, angle = small_angles(vertices, triangles, origin.min_angle or 0.0)
+    worst, angle = angles_below(vertices, triangles, origin.min_angle or 0.0)
     narrow = worst[angle < (origin.min_angle or 0.0) - 1e-9]
     places = vertices[triangles[np.append(narrow[:PLACES], worst[np.argmin(angle)])]].mean(axis=1)
     tell("topology", 0.6)

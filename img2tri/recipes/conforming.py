@@ -30,7 +30,7 @@ from img2tri.shapes.sizes.outline_sizes import by_chords, by_curvature, by_thick
 from img2tri.shapes.sizes.user_size_field import EdgeLength, SizeField, size_field
 from img2tri.shapes.trace.crack_edges import find_crack_edges
 from img2tri.shapes.trace.dual_edges import DualEdges, pixel_areas
-from img2tri.shapes.trace.turning_points import with_turning_points
+from img2tri.shapes.trace.nonsquare_pixels import with_turning_points
 from img2tri.types import Frame, Outlines, RecipeMesh
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ import pytest
 from scipy.spatial import Delaunay
 
 from img2tri.certificate.edge_sides import EdgeSides
-from img2tri.certificate.min_angle_check import small_angles
+from img2tri.certificate.min_angle_check import angles_below
 from img2tri.certificate.outline_distance import SegmentSet
 
 
@@ -44,7 +44,7 @@ def test_the_sides_of_each_edge(seed):
 def test_no_small_angle_is_missed(below):
     points, triangles, _ = random_mesh(4)
     all_angles = oracles.angles(points, triangles).min(axis=1)
-    which, angles = small_angles(points, triangles, below)
+    which, angles = angles_below(points, triangles, below)
     assert angles == pytest.approx(all_angles[which])
     assert angles.min() == pytest.approx(all_angles.min())
     assert set(np.flatnonzero(all_angles < below)) <= set(which.tolist())

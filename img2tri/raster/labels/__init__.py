@@ -13,5 +13,5 @@ absorbed_labels       thin separators: the pixels of some labels given to their 
 cropping              the part of a picture within a box
 connected_components  the pieces of each region that hang together, and how they touch
 specks_and_holes      small components dropped, small holes filled, or only the largest component of each region kept
-label_map_warnings    what will come of a label map that is hardly meant, told before the work
+meshing_warnings      what will come of a label map that is hardly meant, told before the work
 """

@@ -1,7 +1,7 @@
 """Dual edges -> dense outlines: where between two pixel centres the outline passes.
 
 Any place within the bounds is right as far as topology goes (see `dual_edges`), so all places can be chosen well: by the gray values
-where there are any (`iso_crossings`), exactly at corners (`corners`), and by smoothing along the arc within what these leave open
+where there are any (`iso_crossings`), exactly at corners (`outline_corners`), and by smoothing along the arc within what these leave open
 (`constrained_smoothing`); nodes where the chains that meet there lead (`node_placement`).
 """
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from img2tri.arrays import Bools, Floats, Ints, Points, cross
-from img2tri.cells import cells, in_cells_beside, pairs_across, pairs_beside
+from img2tri.cell_lists import cells, in_cells_beside, pairs_across, pairs_beside
 from img2tri.shapes.simplify.simplification import Simplification
 
 GAP = 0.25  # px, the least distance kept between chords, over their deviations

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from img2tri.arrays import Bools, Floats, Ints, Points, independent
-from img2tri.cells import cells, pairs_beside
+from img2tri.cell_lists import cells, pairs_beside
 from img2tri.triangles.generate.pslg import Pslg
 
 CROWDED = 0.68  # two points nearer than this times the wanted edge length are one too many

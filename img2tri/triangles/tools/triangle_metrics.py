@@ -5,8 +5,8 @@ pyvista compute too (C. Stimpson et al., The Verdict Library Reference Manual, S
 can be compared with one found there; ``q``, ``shortest_edge`` and ``longest_edge`` are added. A metric knows no orientation: a
 triangle turned over measures as its mirror image.
 
-libigl gives edge lengths, (signed) areas and angles, its angles being exact to rounding even for needles. All other metrics are a few
-products of these, and cost far less so than through libigl, which finds circumcentres where only the circumradius is wanted.
+libigl gives edge lengths and (signed) areas, `img2tri.triangle_angles` angles that are exact to rounding even for needles. All other
+metrics are a few products of these, and cost far less than through libigl, which finds circumcentres where only their radius is wanted.
 
 A triangle without area has a defined measure: 0 for what lies between 0 and 1 (``q``, ``shape``, ``scaled_jacobian``), Verdict's limit
 of 1e30 for what has no upper bound, and the angles it has in the limit: 0, 0, 180 for three vertices on a line, 90, 90, 0 where two
@@ -22,6 +22,7 @@ from functools import cached_property
 import numpy as np
 
 from img2tri.arrays import Floats, Ints
+from img2tri.triangle_angles import triangle_angles
 
 UNBOUNDED = 1e30
 """What Verdict returns in place of infinity: means stay finite, and JSON has a way to write it."""
@@ -51,9 +52,7 @@ class Geometry:
     @cached_property
     def angles(self) -> Floats:
         """(m, 3) angles in degrees, those of triangles without area by their limits."""
-        import igl
-
-        angles: Floats = np.degrees(igl.internal_angles(self.vertices, self.triangles))
+        angles: Floats = np.degrees(triangle_angles(self.vertices, self.triangles))
         flat = np.flatnonzero((self.lengths == 0).any(axis=1))
         # Two corners coincide: both angles at them tend to 90 degrees, if the two come together from any side alike.
         # All three coincide: nothing tends anywhere; 0, 0, 180 is the worst a triangle can be.

@@ -5,5 +5,4 @@ figure_parts     The parts of a figure: the place for the mesh and the one for i
 notebook         A mesh in a notebook: vertices, triangles, regions -> a small SVG, and a piece of HTML with a line of numbers below it.
 region_colours   Colours for regions: a count -> that many colours, each well apart from those before it.
 image_png        An array -> the bytes of a PNG file.
-triangle_angles  The angle at each corner of each triangle, for the histogram of a figure.
 """

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from img2tri.arrays import Bools, Floats, Ints, runs, unique_edges
+from img2tri.triangle_angles import triangle_angles
 from img2tri.views.figures.image_png import png
 from img2tri.views.figures.region_colours import Colours, as_hex, region_colours
-from img2tri.views.figures.triangle_angles import triangle_angles
 from img2tri.views.objects.flat_or_extruded import per_triangle, plane_mesh
 from img2tri.views.objects.region_borders import bordering
 

@@ -17,10 +17,10 @@ from numpy.typing import ArrayLike
 
 from img2tri.arrays import Floats, Ints
 from img2tri.errors import choice
+from img2tri.triangle_angles import triangle_angles
 from img2tri.types import Frame
 from img2tri.views.figures import figure_parts as parts
 from img2tri.views.figures.region_colours import Colours
-from img2tri.views.figures.triangle_angles import triangle_angles
 from img2tri.views.formats.atomic_write import known_suffix, store, writable
 from img2tri.views.objects.flat_or_extruded import per_triangle, plane_mesh
 

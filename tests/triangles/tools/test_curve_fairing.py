@@ -13,8 +13,8 @@ from oracles import angles, areas, check_valid
 
 from img2tri.errors import MeshError, ParameterError
 from img2tri.triangles.generate.constrained_delaunay import triangulate
+from img2tri.triangles.tools.cotangent_smoothing import cotangent
 from img2tri.triangles.tools.curve_fairing import _limits, fair_curves
-from img2tri.triangles.tools.laplacian_smoothing import cotangent
 from img2tri.triangles.tools.topology import boundary_edges, curve_vertices, interface_edges
 
 

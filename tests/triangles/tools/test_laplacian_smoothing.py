@@ -13,7 +13,8 @@ from scipy.spatial import Delaunay
 from img2tri.arrays import unique_edges
 from img2tri.errors import MeshError, ParameterError
 from img2tri.triangles.tools.cotangent_laplacian import laplacian
-from img2tri.triangles.tools.laplacian_smoothing import DAMPING, cotangent, uniform
+from img2tri.triangles.tools.cotangent_smoothing import DAMPING, cotangent
+from img2tri.triangles.tools.laplacian_smoothing import uniform
 from img2tri.triangles.tools.topology import curve_vertices
 
 

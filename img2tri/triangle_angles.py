@@ -1,4 +1,4 @@
-"""The angle at each corner of each triangle: vertices, triangles -> radians, whichever way a triangle is wound.
+"""The angle at each corner of each triangle, for measures and figures alike: vertices, triangles -> radians, however a triangle is wound.
 
 By arctan2 of cross and dot product, which is exact to rounding even for needles.
 """

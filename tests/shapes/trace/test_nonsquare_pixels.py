@@ -13,7 +13,7 @@ from shapes.simplify.test_tolerance import angles_between
 from img2tri import mesh_image
 from img2tri.shapes.place.placement import place_outlines
 from img2tri.shapes.trace.crack_edges import find_crack_edges
-from img2tri.shapes.trace.turning_points import with_turning_points
+from img2tri.shapes.trace.nonsquare_pixels import with_turning_points
 from img2tri.types import Frame
 
 STRETCHED = [(5.0, 1.0), (1.0, 5.0), (12.0, 1.0), (1.0, 20.0)]

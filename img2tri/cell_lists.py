@@ -1,4 +1,4 @@
-"""Cells: which of many places are near each other, found in a grid by sorting; what search trees do, in a few array operations.
+"""Cell lists: which of many places are near each other, found in a grid by sorting, as search trees do, in a few array operations.
 
 Cells are numbered row by row, with empty ones around all, so that those beside a cell are three stretches of numbers::
 

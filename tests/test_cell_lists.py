@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from img2tri.cells import cells, in_cells_beside, pairs_across, pairs_beside
+from img2tri.cell_lists import cells, in_cells_beside, pairs_across, pairs_beside
 
 
 @pytest.mark.parametrize("reach", [0.3, 1.0, 4.0, 30.0])

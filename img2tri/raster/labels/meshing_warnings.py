@@ -24,7 +24,7 @@ PIECES = 20  # fewer pieces that touch at corners are nothing to warn of
 MANY_REGIONS = 20  # fewer regions that are only edges may be meant
 
 
-def label_map_warnings(found: Segmentation, *, connectivity: int, asked: float | None) -> Iterator[Img2triWarning]:
+def meshing_warnings(found: Segmentation, *, connectivity: int, asked: float | None) -> Iterator[Img2triWarning]:
     """Yield a warning for each thing that is hardly meant.
 
     Parameters
@@ -39,7 +39,7 @@ def label_map_warnings(found: Segmentation, *, connectivity: int, asked: float |
     Examples
     --------
     >>> diagonal = np.eye(30, dtype=bool)
-    >>> [str(w)[:60] for w in label_map_warnings(Segmentation(diagonal, 0), connectivity=4, asked=None)]
+    >>> [str(w)[:60] for w in meshing_warnings(Segmentation(diagonal, 0), connectivity=4, asked=None)]
     ['label 1 is 30 pieces that touch at corners of pixels only; c']
     """
     yield from _far_more(found, USUALLY_ASKED if asked is None else asked)

@@ -14,7 +14,7 @@ import img2tri
 from img2tri import mesh_image
 from img2tri.errors import ConfettiWarning, ConnectivityWarning, Img2triWarning, SizeWarning
 from img2tri.raster.labels.absorbed_labels import thin_separators
-from img2tri.raster.labels.label_map_warnings import label_map_warnings, predicted_triangles
+from img2tri.raster.labels.meshing_warnings import meshing_warnings, predicted_triangles
 from img2tri.raster.labels.segmentation import Segmentation
 
 
@@ -46,9 +46,9 @@ def test_a_noisy_page_is_told_before_the_work():
     with pytest.raises(KeyboardInterrupt):
         mesh_image(labels, progress=progress)
     assert "outlines" not in seen
-    told = list(label_map_warnings(Segmentation(labels, 0), connectivity=8, asked=None))
+    told = list(meshing_warnings(Segmentation(labels, 0), connectivity=8, asked=None))
     assert any(isinstance(warning, SizeWarning) for warning in told)
-    assert not any(isinstance(w, SizeWarning) for w in label_map_warnings(Segmentation(labels[:100, :100], 0), connectivity=8, asked=None))
+    assert not any(isinstance(w, SizeWarning) for w in meshing_warnings(Segmentation(labels[:100, :100], 0), connectivity=8, asked=None))
 
 
 def test_predictions_are_of_the_right_size():
@@ -79,7 +79,7 @@ def test_nothing_is_said_of_ordinary_images():
         warnings.simplefilter("error")
         for name, labels in drawn_images.label_maps():
             if "colours" not in name and labels.size < 20_000:
-                assert not list(label_map_warnings(Segmentation(labels.astype(int), 0), connectivity=4, asked=None)), name
+                assert not list(meshing_warnings(Segmentation(labels.astype(int), 0), connectivity=4, asked=None)), name
 
 
 def test_nothing_is_said_of_the_pictures_at_hand():
