@@ -256,13 +256,14 @@ def label_changes(flat: NDArray[Any], shift: int) -> Ints:
     n, size = len(flat) - shift, flat.itemsize
     if n <= 0:
         return np.zeros(0, np.int64)
-    words = n * size // 8
+    words, per_word = n * size // 8, 8 // size
     here = np.frombuffer(flat, np.uint64, words)
     there = np.frombuffer(flat, np.uint64, words, offset=shift * size)
     differ = np.flatnonzero(here != there)
-    per_word = 8 // size
-    candidates = np.concatenate([(differ[:, None] * per_word + np.arange(per_word)).reshape(-1), np.arange(words * per_word, n)])
-    return np.asarray(candidates[flat[candidates] != flat[candidates + shift]])
+    # Of these words, which of the values in each; then the last few values, which fill no word.
+    which, of_word = np.divmod(np.flatnonzero((here[differ] ^ there[differ]).view(f"u{size}") != 0), per_word)
+    rest = words * per_word
+    return np.concatenate([differ[which] * per_word + of_word, rest + np.flatnonzero(flat[rest:n] != flat[rest + shift :])])
 
 
 def neighbour_changes(values: NDArray[Any]) -> tuple[Ints, Ints]:

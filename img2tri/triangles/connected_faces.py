@@ -1,11 +1,11 @@
-"""Which triangles hang together: neighbours -> the number of the face each triangle belongs to."""
+"""Which triangles hang together: neighbours -> the number of the face each triangle belongs to, or what is known of some of each face."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from img2tri.arrays import Ints
+from img2tri.arrays import Bools, Ints
 
 
 def connected_faces(neighbours: NDArray[np.int32]) -> Ints:
@@ -38,3 +38,31 @@ def connected_faces(neighbours: NDArray[np.int32]) -> Ints:
     graph = csr_array((np.ones(len(beyond)), beyond, ends), shape=(len(neighbours),) * 2)
     # Its links all go both ways: strongly connected is connected, and found without a transposed copy.
     return connected_components(graph, connection="strong")[1].astype(np.int64)
+
+
+def spread(neighbours: NDArray[np.int32], values: Ints, known: Bools) -> None:
+    """Give each triangle the value of a known one that it hangs together with: flood fill, all fronts at a time.
+
+    Parameters
+    ----------
+    neighbours
+        As for `connected_faces`.
+    values, known
+        (m,) int64 and bool, what is known of which triangles; both are filled in. Triangles that hang together with none stay.
+
+    Examples
+    --------
+    >>> values, known = np.array([7, 0, 0]), np.array([True, False, False])
+    >>> spread(np.array([[-1, 1, -1], [0, -1, -1], [-1, -1, -1]], np.int32), values, known)
+    >>> values.tolist(), known.tolist()
+    ([7, 7, 0], [True, True, False])
+    """
+    front, place = np.flatnonzero(known), np.zeros(len(values), np.int64)
+    while len(front):
+        beyond, here = neighbours.take(front, axis=0).ravel(), front.repeat(3)
+        at = np.flatnonzero((beyond >= 0) & ~known[beyond])
+        front = beyond[at]
+        values[front], known[front] = values[here[at]], True
+        # Whoever is reached from two sides goes on once.
+        place[front] = order = np.arange(len(front))
+        front = front[place[front] == order]

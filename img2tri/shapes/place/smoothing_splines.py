@@ -157,7 +157,7 @@ class _Numbering:
 
     def of_unknowns(self, values: Floats) -> Floats:
         """Give the unknowns (..., u) the values of their own places, out of (..., c)."""
-        return np.asarray(values[..., self.own])
+        return values.take(self.own, axis=-1)
 
     def third_derivatives(self, steps: Floats) -> Floats:
         """Return the factors (4, c - 3) of third derivatives, of places so far from the next one (c - 1,).
@@ -215,7 +215,7 @@ class _Equations:
             raise np.linalg.LinAlgError("smoothing spline: the equations are not positive definite")
         x = dpbtrs(factor, b.T, lower=1)[0].T
         at, count = self._numbering.at, self._factors.shape[1]
-        along = x[:, at]
+        along = x.take(at, axis=1)
         rows = self._factors[0] * along[:, :count]
         for i in range(1, 4):
             rows += self._factors[i] * along[:, i : i + count]

@@ -18,11 +18,11 @@ from dataclasses import dataclass
 
 import numpy as np
 import pythoncdt
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from img2tri.arrays import Floats, Ints
 from img2tri.errors import MeshError
-from img2tri.triangles.connected_faces import connected_faces
+from img2tri.triangles.connected_faces import connected_faces, spread
 
 SUPER = 3  # corners of one triangle around everything, which pythoncdt puts before the vertices it was given
 
@@ -179,16 +179,24 @@ def _label(triangulation: pythoncdt.Triangulation, n: int, segments: Ints, left:
     # Triangles joined across edges that are no segments; -1 for the rest.
     joined = neighbours.copy()
     joined.ravel()[edges] = -1
+    # Every face takes the label its voters name; the face around everything, 0.
+    region, known = np.zeros(len(triangles), np.int64), np.zeros(len(triangles), bool)
+    region[edges // 3], region[outer] = votes, 0
+    known[edges // 3] = known[outer] = True
+    spread(joined, region, known)
+    if (region[edges // 3] != votes).any() or ((region[joined] != region[:, None]) & (joined >= 0)).any():
+        at_fault = _outvoted(joined, outer, edges, owners, votes)
+        raise PslgError(f"left and right: expected one region on each face, found {len(at_fault)} segments that disagree", at_fault)
+    return triangles, region
+
+
+def _outvoted(joined: NDArray[np.int32], outer: Ints, edges: Ints, owners: Ints, votes: Ints) -> Ints:
+    """Return the segments that vote for another region than the face on that side of them has, which is that of one of its voters."""
     faces = connected_faces(joined)
-    # Every face takes the label one of its voters names; the face around everything, 0.
     region = np.zeros(faces.max() + 1, np.int64)
     region[faces[edges // 3]] = votes
     region[faces[outer]] = 0
-    wrong = region[faces[edges // 3]] != votes
-    if wrong.any():
-        at_fault = np.unique(owners[wrong])
-        raise PslgError(f"left and right: expected one region on each face, found {len(at_fault)} segments that disagree", at_fault)
-    return triangles, region[faces]
+    return np.unique(owners[region[faces[edges // 3]] != votes])
 
 
 def _votes(triangles: Ints, n: int, segments: Ints, left: Ints, right: Ints) -> tuple[Ints, Ints, Ints]:
