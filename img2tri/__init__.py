@@ -21,7 +21,7 @@ The house around the stages:
     app/          the viewer with knobs, in a browser and in notebooks
     types         records handed between stages; `Frame`, one of them, turns pixels into world coordinates, and "8px" or "2%" into lengths
     arrays        what all files share: chains as arrays of indices, edges, sorting, the plane as complex numbers; `errors` likewise
-    cell_lists    which of many places are near each other
+    cell_lists    which of many places are near each other; `scipy_kernels` loads SciPy in parts
     triangle_angles  the angle at each corner of each triangle, for measures and figures alike
     cli/          the command line, ``img2tri``; ``python -m img2tri`` begins in `__main__`
 

@@ -25,7 +25,7 @@ MAPS = sorted({path.parent for path in FILES})
 # Lowest first; the modules of one row do not import each other.
 ORDER = [
     {"errors"},
-    {"arrays"},
+    {"arrays", "scipy_kernels"},
     {"types", "cell_lists", "triangle_angles"},
     set(ROOMS),
     {"paper"},
@@ -44,6 +44,7 @@ FOLDERS = {*ROOMS, "paper", "recipes", "certificate", "options", "many", "tiles"
 # numpy is at home everywhere.
 LIBRARIES = {
     "arrays": {"scipy"},  # sorts by counting
+    "scipy_kernels": {"scipy"},
     "raster": {"cv2", "PIL", "tifffile", "pydicom", "nibabel", "scipy", "h5py", "zarr"},  # scipy joins runs of pixels to components
     "shapes": {"shapely", "scipy", "cv2"},  # cv2 measures distances to the places where lengths are given
     "triangles": {"scipy", "igl", "pythoncdt", "shapely"},

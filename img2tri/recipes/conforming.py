@@ -227,24 +227,24 @@ def _filled(coarse: Simplification, pairs: PeriodicPairs, sizes: Sizes, demands:
     try:
         for _ in range(FILLINGS):
             if demands.interior == "lattice":
-                mesh = _with_lattice(coarse, chains, sizes, demands)
+                made = _with_lattice(coarse, chains, sizes, demands)
             else:
                 from img2tri.recipes.poisson_interior import scattered
 
-                mesh = scattered(chains, sizes.longest, sizes.field, min_angle=demands.min_angle, seed=demands.seed)
-            filled, chains = chains, pairs.divided_alike(chains, mesh[0])
+                made = scattered(chains, sizes.longest, sizes.field, min_angle=demands.min_angle, seed=demands.seed)
+            filled, chains = chains, pairs.divided_alike(chains, made[0])
             if chains is filled:
                 break
     except PslgError as error:
         segments = chains.segments[0]
         return error, chains, chains.points[segments[error.segments if len(error.segments) else slice(None)]].reshape(-1, 2)
-    vertices, triangles, _ = mesh
-    sharp = narrower(as_complex(vertices), triangles, demands.min_angle - 1e-9)
-    return mesh, chains, vertices[triangles[sharp]].reshape(-1, 2)
+    vertices, triangles, regions, irregular = made
+    sharp = narrower(as_complex(vertices), triangles[:irregular], demands.min_angle - 1e-9)
+    return (vertices, triangles, regions), chains, vertices[triangles[:irregular][sharp]].reshape(-1, 2)
 
 
-def _with_lattice(coarse: Simplification, chains: Outlines, sizes: Sizes, demands: _Demands) -> Mesh:
-    """Begin a mesh, ask the outlines where their points may be that it wants elsewhere, finish it."""
+def _with_lattice(coarse: Simplification, chains: Outlines, sizes: Sizes, demands: _Demands) -> tuple[Floats, Ints, Ints, int]:
+    """Begin a mesh, ask the outlines where their points may be that it wants elsewhere, and finish it, see `filling.finish`."""
     from img2tri.triangles.generate.filling import begin, finish
 
     segments, left, right = chains.segments

@@ -23,7 +23,7 @@ SHORTEST_SPLIT = 0.03  # px: no shorter edge is split for the sake of angles
 
 def scattered(
     chains: Outlines, longest: float, field: Callable[[Floats], Floats] | None, *, min_angle: float, seed: int
-) -> tuple[Floats, Ints, Ints]:
+) -> tuple[Floats, Ints, Ints, int]:
     """Fill the regions within coarse outlines with Poisson-disk points, and triangulate them.
 
     Parameters
@@ -39,8 +39,8 @@ def scattered(
 
     Returns
     -------
-    vertices, triangles, regions
-        As from `img2tri.triangles.generate.filling.fill`.
+    vertices, triangles, regions, irregular
+        As from `img2tri.triangles.generate.filling.finish`; no triangle is regular.
     """
     from scipy.spatial import cKDTree
 
@@ -58,7 +58,7 @@ def scattered(
         points, distance = points[clear], distance[clear]
         points = points[_thinned(points, distance)]
     found = ruppert(np.concatenate([chains.points, points]), segments, left, right, min_angle, SHORTEST_SPLIT)
-    return found.vertices, found.triangles, found.regions
+    return found.vertices, found.triangles, found.regions, len(found.triangles)
 
 
 def _sampled(field: Callable[[Floats], Floats], points: Floats) -> Floats:

@@ -73,8 +73,9 @@ def place_outlines(
     shift = bend_to_nodes(bounded, np.where(dual_edges.slides, shift, 0.0), ends, dual_edges.bounds != 0)
     wanted = _wanted_areas(bounded, dual_edges, slack)
     shift = restore_swept_areas(bounded, shift, wanted)
-    bounded, shift = open_wedges(bounded, shift, dual_edges.blunt_middle, dual_edges.is_junction, dual_edges.bounds)
-    wanted = _wanted_areas(bounded, dual_edges, slack)
+    if dual_edges.is_junction.any():
+        bounded, shift = open_wedges(bounded, shift, dual_edges.blunt_middle, dual_edges.is_junction, dual_edges.bounds)
+        wanted = _wanted_areas(bounded, dual_edges, slack)
     shift = exchange_areas(bounded, shift, wanted, *dual_edges.regions, pixel_areas(dual_edges))
     return dual_edges.outlines(bounded.points + shift * dual_edges.vector), dual_edges
 

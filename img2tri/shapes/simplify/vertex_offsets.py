@@ -55,21 +55,22 @@ class NormalOffsets:
         ahead[first], behind[last] = last, first
         self._begin, self._end = s.chains.ring_ends
         behind[self._begin], ahead[self._end] = behind[self._end], ahead[self._begin]
-        stay = s.snapped_entries
-        may = (behind >= 0) & (ahead >= 0) & (snapped | ~stay) & s.dual_edges.slides[s.chains.indices]
-        fair = may & may[behind] & may[ahead]
+        kept = np.flatnonzero(s.kept)
+        point, may = s.chains.indices[kept], np.zeros(len(s.offset), bool)
+        may[kept] = (behind[kept] >= 0) & (ahead[kept] >= 0) & (snapped | ~s.snapped[point]) & (s.dual_edges.vector[point] != 0)
+        between = may[kept] & may[behind[kept]] & may[ahead[kept]]
         may[self._end] = False
-        self.at = np.flatnonzero(may)
+        chosen = may[kept]
+        self.at, point, self._inner = kept[chosen], point[chosen], between[chosen]
         self.behind, self.ahead = behind[self.at], ahead[self.at]
-        self._inner = fair[self.at]
         self._second_behind, self._second_ahead = behind[self.behind], ahead[self.ahead]
-        # The dense points they lie at, and those before and after these.
+        # The dense points they lie at, and those before and after these; a ring begins after the last but one of its entries.
+        before = self.at - 1
+        before[np.searchsorted(self.at, self._begin[may[self._begin]])] = self._end[may[self._begin]] - 1
         self._dense = s.dense
-        before, after = np.roll(self._dense, 1), np.roll(self._dense, -1)
-        before[self._begin], after[self._end] = self._dense[self._end - 1], self._dense[self._begin + 1]
-        self._points = self._dense[self.at], before[self.at], after[self.at]
-        self._snapped = stay[self.at]
-        self._rest = s.dual_edges.blunt_middle[s.chains.indices[self.at]] - self._points[0]
+        self._points = self._dense[self.at], self._dense[before], self._dense[self.at + 1]
+        self._snapped = s.snapped[point]
+        self._rest = s.dual_edges.blunt_middle[point] - self._points[0]
 
     def zigzag(self, offset: Points) -> Floats:
         """Return how far (b,) to move to smooth a zigzag from vertex to vertex: against the fourth difference, which arcs have none of."""

@@ -55,8 +55,8 @@ def trace_chains(crack_edges: CrackEdges) -> Sequences:
 def follow(successor: Ints) -> Sequences:
     """Order items into sequences, given the item that follows each, or `NODE` where nothing does.
 
-    By pointer jumping (J. C. Wyllie, "The complexity of parallel computations", 1979): each item knows the goal nearest ahead of it within
-    1, 2, 4, ... steps, and how far that is, until it has seen all of its sequence. Goals are last items, and in closed sequences the lowest.
+    By pointer jumping (J. C. Wyllie, "The complexity of parallel computations", 1979): each item knows the best goal within 1, 2, 4, ...
+    steps ahead, and how far that is, until it has seen all of its sequence. Best are last items, and in closed sequences the lowest.
 
     Examples
     --------

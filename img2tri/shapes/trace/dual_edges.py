@@ -81,8 +81,10 @@ class DualEdges:
     @cached_property
     def beside_touching(self) -> tuple[Ints, Ints]:
         """The crossings (t,) before and after each corner of pixels at which two outlines pass, once for each of the two."""
-        at, k = self.chains.indices, len(self.crossed)
-        passes = np.searchsorted(np.sort(self.crack_edges.tail), self.crack_edges.head[self.crossed][:, None] + [0, 1])
+        at, k, tails = self.chains.indices, len(self.crossed), np.sort(self.crack_edges.tail)
+        if not (tails[1:] == tails[:-1]).any():
+            return np.zeros(0, np.int64), np.zeros(0, np.int64)
+        passes = np.searchsorted(tails, self.crack_edges.head[self.crossed][:, None] + [0, 1])
         twice = np.append(np.diff(passes, axis=1)[:, 0] == 2, np.zeros(len(self.middle) - k, bool))
         # Of the points of one crack edge the last one is beside the corner.
         edge = np.append(self.crossed, np.full(len(self.middle) - k, -1))[at]
@@ -102,6 +104,8 @@ class DualEdges:
                               x
         """
         at, z, (one, other) = self.chains.indices, self.middle, self.beside_touching
+        if not len(one):
+            return z
         corner = self.corner_after[one]
         cut = cross(corner - z[one], z[other] - corner) / 2
         # Each outline gets back what it cuts off at a corner, by the same shift of the crossings before and after it; a
@@ -117,7 +121,7 @@ class DualEdges:
         behind, ahead = at[entry[moved] - 1], at[entry[moved] + 1]
         goes_round = np.isin(entry[moved], begin)
         behind[goes_round] = at[end[np.searchsorted(begin, entry[moved[goes_round]])] - 1]
-        for _ in range(FAIR_ROUNDS if len(moved) else 0):
+        for _ in range(FAIR_ROUNDS):
             # A shift t sweeps t * vector x (ahead - behind) / 2, with the neighbours half-way on theirs.
             there, back = (z[i] + shift[i] / 2 * self.vector[i] for i in (ahead, behind))
             width = cross(self.vector[moved], (there - back) / 2) / corners
@@ -130,6 +134,8 @@ class DualEdges:
     def blunt_middle(self) -> Points:
         """(n,) the fair middles, nearer to the middles where outlines through them would turn much more sharply than by right angles."""
         z = self.fair_middle
+        if z is self.middle:
+            return z
         heads = self.chains.heads
         ends = self.chains.indices[np.stack([heads, heads + 1])]
         near = np.zeros(len(z), bool)

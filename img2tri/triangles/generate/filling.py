@@ -126,7 +126,7 @@ def fill(
     if not (np.any(left) or np.any(right)):
         return points.copy(), np.zeros((0, 3), np.int64), np.zeros(0, np.int64)
     begun = begin(points, segments, left, right, edge_length=edge_length, gradation=gradation, size=size, seed=seed)
-    return finish(begun, min_angle=min_angle)
+    return finish(begun, min_angle=min_angle)[:3]
 
 
 def begin(
@@ -183,7 +183,7 @@ def begin(
     return Filling(pslg, sizes, at_points, at_middles, lattice, strip, mesh, names, len(points))
 
 
-def finish(begun: Filling, points: Floats | None = None, *, min_angle: float = 30.0) -> tuple[Floats, Ints, Ints]:
+def finish(begun: Filling, points: Floats | None = None, *, min_angle: float = 30.0) -> tuple[Floats, Ints, Ints, int]:
     """Finish a mesh, with the points given for it put to some places (n, 2) near where it wants them; None: exactly there.
 
     Parameters
@@ -203,6 +203,8 @@ def finish(begun: Filling, points: Floats | None = None, *, min_angle: float = 3
         Counter-clockwise. Every segment is an edge, or a chain of edges where it was long for the length wanted there.
     regions : (m,) int64
         The region of each triangle.
+    irregular : int
+        How many triangles, the first ones, may have other angles than 60 degrees.
 
     Raises
     ------
@@ -226,7 +228,7 @@ def finish(begun: Filling, points: Floats | None = None, *, min_angle: float = 3
         raise _named(error, begun.pslg) from error
     assert refined is not None, "without a core every edge may be split"
     mesh = with_core(strip, RegionMesh(*refined))
-    return as_rows(mesh.vertices), mesh.triangles, begun.names[mesh.codes]
+    return as_rows(mesh.vertices), mesh.triangles, begun.names[mesh.codes], len(refined[1])
 
 
 def _named(error: PslgError, pslg: Pslg) -> PslgError:

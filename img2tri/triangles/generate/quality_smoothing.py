@@ -105,13 +105,13 @@ def raise_worst_angles(vertices: Points, triangles: Ints, free: Bools, target: f
     return _raised(vertices, min_angle_tangents(vertices, triangles), triangles, free, target)[0]
 
 
-def smooth_and_raise(vertices: Points, triangles: Ints, free: Bools) -> Points:
-    """Smooth, raise the worst angle, and smooth once more.
+def smooth_and_raise(vertices: Points, triangles: Ints, free: Bools, tangents: Floats | None = None) -> Points:
+    """Smooth, raise the worst angle, and smooth once more. The smallest tangents (m,) may be known.
 
     Only the worst angle is worth large powers: what else they spoil is mended by the last smoothing, in which that angle stays.
     """
     smoother = _Smoother(triangles, free)
-    return smoother.smoothed(*_raised(*smoother.smoothed(vertices), triangles, free))[0]
+    return smoother.smoothed(*_raised(*smoother.smoothed(vertices, tangents), triangles, free))[0]
 
 
 class _Smoother:

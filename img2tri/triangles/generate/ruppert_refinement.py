@@ -8,13 +8,15 @@ larger there.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from img2tri.arrays import Bools, Ints, Points, as_complex, as_rows, unique_edges
 from img2tri.triangles.generate.constrained_delaunay import ruppert
 from img2tri.triangles.generate.pslg import Pslg
 from img2tri.triangles.generate.quality_smoothing import patch_around, smooth, touching
-from img2tri.triangles.min_angle_tangents import narrower
+from img2tri.triangles.min_angle_tangents import min_angle_tangents, narrower
 
 # How far patches reach around bad triangles, then around split edges of the rim; None: to the end.
 PATCH_RINGS = (3, 3, 6, 6, 6, 12, 12, 24, 24, None)
@@ -31,8 +33,11 @@ def refine_with_reserve(
     A degree or two more may take very many points, or may not be reached with any number. So it is tried with a few for each triangle
     that lacks it.
     """
+    tangents = min_angle_tangents(vertices, triangles)
     for wanted in (min_angle + RESERVE, min_angle + RESERVE / 2):
-        lacking = int(np.count_nonzero(narrower(vertices, triangles, wanted)))
+        lacking = int(np.count_nonzero(tangents < math.tan(math.radians(wanted))))
+        if not lacking:
+            return vertices, triangles, codes
         if lacking <= FEW:
             better = refine_locally(vertices, triangles, codes, constraints, n_outline, wanted, SOME_POINTS + POINTS_EACH * lacking)
             if better is not None and not narrower(better[0], better[1], wanted - 1e-9).any():

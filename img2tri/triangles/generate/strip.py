@@ -19,7 +19,7 @@ from img2tri.triangles.generate.interior_sizes import SizeFunction, nearest_of
 from img2tri.triangles.generate.pslg import Pslg
 from img2tri.triangles.generate.quality_smoothing import SAFE, smooth, smooth_and_raise
 from img2tri.triangles.generate.valence_repair import repair_valences
-from img2tri.triangles.min_angle_tangents import narrower
+from img2tri.triangles.min_angle_tangents import min_angle_tangents
 
 CLEAR = 0.66  # lattice nodes nearer to an outline or apex than this times the wanted length are dropped
 NUDGE, GOLDEN = 1e-7, 0.618  # of the shortest segment: how far free points are put off; of a turn, from one to the next: any odd part
@@ -143,10 +143,11 @@ def finish_strip(strip: Strip, relaxed: RegionMesh, first: Points) -> RegionMesh
     added, stays = repair_valences(vertices, triangles, free)
     vertices[: len(first)] = first
     # With nothing to repair the triangles may stay, unless the first points spoilt them.
-    if not stays.all() or narrower(vertices, triangles, SAFE).any():
+    tangents = min_angle_tangents(vertices, triangles) if stays.all() else None
+    if tangents is None or (tangents < np.tan(np.radians(SAFE))).any():
         mesh = _triangulated(strip, vertices[:fixed], np.concatenate([vertices[fixed:][stays[fixed:]], added]))
-        vertices, triangles, codes, free = mesh.vertices, mesh.triangles, mesh.codes, _free(strip, mesh)
-    return RegionMesh(smooth_and_raise(vertices, triangles, free), triangles, codes)
+        vertices, triangles, codes, free, tangents = mesh.vertices, mesh.triangles, mesh.codes, _free(strip, mesh), None
+    return RegionMesh(smooth_and_raise(vertices, triangles, free, tangents), triangles, codes)
 
 
 def _triangulated(strip: Strip, fixed: Points, free: Points) -> RegionMesh:

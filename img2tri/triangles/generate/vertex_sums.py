@@ -12,12 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from img2tri.arrays import Floats, Ints, Points
+from img2tri.scipy_kernels import scipy_kernel
 
 try:
-    from scipy.sparse._sparsetools import csc_matvec
-except ImportError:  # it is SciPy's own, and may move
+    csc_matvec = scipy_kernel("sparse", "_sparsetools").csc_matvec
+except (ImportError, AttributeError):  # it is SciPy's own, and may move
 
-    def csc_matvec(n: int, m: int, ends: Any, entries: Any, data: Any, values: Any, out: Any) -> None:  # type: ignore[misc]
+    def csc_matvec(n: int, m: int, ends: Any, entries: Any, data: Any, values: Any, out: Any) -> None:
         """Add to `out` the product of a sparse matrix, given by columns, with the values."""
         from scipy.sparse import csc_array
 

@@ -281,7 +281,8 @@ def test_points_slide_as_far_as_they_may_and_triangles_get_better(seed):
     assert way.max() > 0.05
     # Of the inner ones the outlines let none go.
     places = np.where(np.arange(len(points))[:, None] < 60, begun.wanted, points)
-    vertices, triangles, _ = finish(begun, places)
+    vertices, triangles, _, irregular = finish(begun, places)
+    assert (abs(oracles.angles(vertices, triangles[irregular:]) - 60) < 1e-9).all()
     oracles.check_valid(vertices, triangles)
     assert np.array_equal(vertices[: len(points)], places)
     both = finish(begun)

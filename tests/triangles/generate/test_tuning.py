@@ -56,7 +56,7 @@ def test_points_that_slide():
     meshes = []
     for seed in range(5):
         given = network((wave(75, 60, lobes=4), 1, 0), (ring(24, 20, (1.0 * seed, 0.5)), 0, 1))
-        meshes.append(finish(begin(*given, edge_length=5.0, limits=np.full(len(given[0]), 0.6), seed=seed)))
+        meshes.append(finish(begin(*given, edge_length=5.0, limits=np.full(len(given[0]), 0.6), seed=seed))[:3])
     check(meshes, 45.1, 0.9868, 885)
 
 
