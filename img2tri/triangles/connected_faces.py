@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -57,7 +59,8 @@ def spread(neighbours: NDArray[np.int32], values: Ints, known: Bools) -> None:
     >>> values.tolist(), known.tolist()
     ([7, 7, 0], [True, True, False])
     """
-    front, place = np.flatnonzero(known), np.zeros(len(values), np.int64)
+    front: NDArray[np.integer[Any]] = np.flatnonzero(known)
+    place = np.zeros(len(values), np.int64)
     while len(front):
         beyond, here = neighbours.take(front, axis=0).ravel(), front.repeat(3)
         at = np.flatnonzero((beyond >= 0) & ~known[beyond])
