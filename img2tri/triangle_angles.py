@@ -18,9 +18,12 @@ def triangle_angles(vertices: Floats, triangles: Ints) -> Floats:
     >>> np.rad2deg(triangle_angles(np.array([[0, 0], [1, 0], [0, 1]]), np.array([[0, 1, 2]])).round(9)).round(3).tolist()
     [[90.0, 45.0, 45.0]]
     """
-    corners = vertices[triangles]
-    to_next = np.roll(corners, -1, axis=1) - corners
-    to_last = np.roll(corners, 1, axis=1) - corners
-    cross = to_next[..., 0] * to_last[..., 1] - to_next[..., 1] * to_last[..., 0]
-    angles: Floats = np.arctan2(np.abs(cross), (to_next * to_last).sum(axis=2))
+    (x0, x1, x2), (y0, y1, y2) = (part[triangles.T] for part in vertices.T)
+    angles = np.empty((len(triangles), 3))
+    for corner, (x, y, next_x, next_y, last_x, last_y) in enumerate(
+        ((x0, y0, x1, y1, x2, y2), (x1, y1, x2, y2, x0, y0), (x2, y2, x0, y0, x1, y1))
+    ):
+        to_next, to_last = (next_x - x, next_y - y), (last_x - x, last_y - y)
+        cross, dot = to_next[0] * to_last[1] - to_next[1] * to_last[0], to_next[0] * to_last[0] + to_next[1] * to_last[1]
+        angles[:, corner] = np.arctan2(np.abs(cross), dot)
     return angles

@@ -202,5 +202,5 @@ def _chosen(job: Job, mesh: TriangleMesh) -> list[str]:
     chosen += "" if threshold is None else f", threshold {', '.join(f'{level:g}' for level in levels)} ({settings['threshold_from']})"
     count = len(mesh.origin.outlines.left) if mesh.origin and "min_area" not in job.options else 0
     chosen += "" if count < CONFETTI else f"; {count:,} outlines, of which --min-area 20px2 would drop specks"
-    noted = [f"{'noted':<12}{note}" for note in mesh.report.notes]
+    noted = [f"{'noted':<12}{note}" for note in (mesh.origin.notes if mesh.origin else [])]
     return [f"{'chosen':<12}{chosen}", *noted, *([f"{'saved':<12}{', '.join(job.files)}"] if job.files else [])]

@@ -5,8 +5,9 @@ pyvista compute too (C. Stimpson et al., The Verdict Library Reference Manual, S
 can be compared with one found there; ``q``, ``shortest_edge`` and ``longest_edge`` are added. A metric knows no orientation: a
 triangle turned over measures as its mirror image.
 
-libigl gives edge lengths and (signed) areas, `img2tri.triangle_angles` angles that are exact to rounding even for needles. All other
-metrics are a few products of these, and cost far less than through libigl, which finds circumcentres where only their radius is wanted.
+Edge lengths and (signed) areas are those of libigl to the bit, `img2tri.triangle_angles` has angles that are exact to rounding even for
+needles. All other metrics are a few products of these, and cost far less than through libigl, which finds circumcentres where only their
+radius is wanted, and imports SciPy's sparse matrices.
 
 A triangle without area has a defined measure: 0 for what lies between 0 and 1 (``q``, ``shape``, ``scaled_jacobian``), Verdict's limit
 of 1e30 for what has no upper bound, and the angles it has in the limit: 0, 0, 180 for three vertices on a line, 90, 90, 0 where two
@@ -35,19 +36,23 @@ class Geometry:
     vertices: Floats
     triangles: Ints
 
+    @property
+    def _corners(self) -> tuple[Floats, Floats]:
+        """X and y (3, m) of the corners."""
+        corners = self.triangles.T
+        return self.vertices[:, 0][corners], self.vertices[:, 1][corners]
+
     @cached_property
     def lengths(self) -> Floats:
         """(m, 3) lengths of the edges."""
-        import igl
-
-        return igl.edge_lengths(self.vertices, self.triangles)  # type: ignore[no-any-return]
+        x, y = self._corners
+        return np.stack([np.sqrt((x[i] - x[j]) ** 2 + (y[i] - y[j]) ** 2) for i, j in ((1, 2), (2, 0), (0, 1))], axis=1)
 
     @cached_property
     def areas(self) -> Floats:
         """(m,) areas, negative for triangles turned over."""
-        import igl
-
-        return igl.doublearea(self.vertices, self.triangles) / 2  # type: ignore[no-any-return]
+        x, y = self._corners
+        return np.asarray(((x[0] - x[2]) * (y[1] - y[2]) - (y[0] - y[2]) * (x[1] - x[2])) / 2)
 
     @cached_property
     def angles(self) -> Floats:
