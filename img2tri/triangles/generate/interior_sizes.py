@@ -20,6 +20,8 @@ from img2tri.arrays import Floats, Ints, Points, as_rows
 if TYPE_CHECKING:
     from scipy.spatial import cKDTree
 
+FEW_PAIRS = 1 << 16  # of points and sources: for fewer no search tree is built, and SciPy's are not imported
+
 
 @dataclass(frozen=True)
 class SizeFunction:
@@ -57,30 +59,45 @@ class SizeFunction:
         for sources, lengths in self._classes:
             least = lengths.min()
             open_ = np.flatnonzero(wanted > least)
-            distance, nearest = _query(sources, points[open_], (self.largest - least) / self.gradation)
+            distance, nearest = sources.nearest(points[open_], (self.largest - least) / self.gradation)
             found = np.flatnonzero(nearest < len(lengths))
             open_, nearest = open_[found], nearest[found]
             wanted[open_] = np.minimum(wanted[open_], lengths[nearest] + self.gradation * distance[found])
         return wanted
 
     @cached_property
-    def _classes(self) -> list[tuple[cKDTree, Floats]]:
+    def _classes(self) -> list[tuple[_Sources, Floats]]:
         """Sources with lengths within a factor of two, and these; the shortest first."""
-        if not len(self.sources):
-            return []
-        from scipy.spatial import cKDTree
-
         level: Ints = np.floor(np.log2(self.largest / self.lengths)).astype(np.int64)
-        return [(cKDTree(as_rows(self.sources[level == k])), self.lengths[level == k]) for k in np.unique(level)[::-1]]
+        return [(_Sources(self.sources[level == k]), self.lengths[level == k]) for k in np.unique(level)[::-1]]
 
 
 def nearest_of(sources: Points, points: Points, reach: float = np.inf) -> tuple[Floats, Ints]:
     """Return the distance (n,) of points to the nearest source within reach, and its number, or the count of sources if there is none."""
-    from scipy.spatial import cKDTree
-
-    return _query(cKDTree(as_rows(sources)), points, reach)
+    return _Sources(sources).nearest(points, reach)
 
 
-def _query(tree: cKDTree, points: Points, reach: float) -> tuple[Floats, Ints]:
-    distance, nearest = tree.query(as_rows(points), distance_upper_bound=reach)
-    return np.asarray(distance, np.float64), np.asarray(nearest, np.int64)
+class _Sources:
+    """Places of which the nearest is asked for: of few by all distances, of many by a search tree."""
+
+    def __init__(self, places: Points) -> None:
+        self._places = places
+
+    @cached_property
+    def _tree(self) -> cKDTree:
+        from scipy.spatial import cKDTree
+
+        return cKDTree(as_rows(self._places))
+
+    def nearest(self, points: Points, reach: float) -> tuple[Floats, Ints]:
+        """Return what `nearest_of` does."""
+        count = len(self._places)
+        if not 0 < count * len(points) <= FEW_PAIRS:
+            distance, nearest = self._tree.query(as_rows(points), distance_upper_bound=reach)
+            return np.asarray(distance, np.float64), np.asarray(nearest, np.int64)
+        across, up = (points.real[:, None] - self._places.real), (points.imag[:, None] - self._places.imag)
+        square = across * across + up * up
+        nearest = square.argmin(axis=1)
+        distance = np.sqrt(square[np.arange(len(points)), nearest])
+        near = distance < reach
+        return np.where(near, distance, np.inf), np.where(near, nearest, count)
