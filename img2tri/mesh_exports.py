@@ -176,7 +176,6 @@ class MeshExports:
         image
             Of .html: what was meshed, a path or an array, to be seen below the mesh.
         """
-        from img2tri.mesh_pictures import save_page
         from img2tri.views.formats import svg_dxf_geojson as vectors
         from img2tri.views.formats.atomic_write import known_suffix
         from img2tri.views.formats.save_load import SURFACE_FORMATS, save
@@ -202,6 +201,8 @@ class MeshExports:
                 if value is not None:
                     raise ParameterError(f"{name}: expected None for {suffix}, which is a drawing, found {value!r}")
         if suffix == ".html":
+            from img2tri.mesh_pictures import save_page
+
             save_page(self, path, image)
         elif suffix in vectors.DRAWING_FORMATS:
             about = {"bounds": self._bounds(), "upward": self.frame.upward, "field_data": self._data()["field_data"]}

@@ -146,6 +146,14 @@ def test_mesh_image_loads_no_view():
     assert not modules_after(code) & {"trimesh", "pyvista", "vtkmodules", "matplotlib", "rich", "cv2", "PIL"}
 
 
+def test_from_a_small_mask_to_a_file_no_package_of_scipy_is_loaded(tmp_path):
+    code = "import numpy, sys, img2tri; mesh = img2tri.mesh_image(numpy.hypot(*numpy.mgrid[-20:20, -20:20]) < 15, edge_length=4); "
+    code += f"mesh.save({str(tmp_path / 'mesh.stl')!r}); mesh.quality(); print(*[name for name in sys.modules if 'scipy.' in name])"
+    found = modules_after(code)
+    assert not found & {"scipy.sparse", "scipy.linalg", "scipy.spatial", "scipy.special", "scipy.ndimage"}
+    assert not found & {"igl", "shapely", "trimesh", "pyvista", "vtkmodules", "matplotlib", "rich", "cv2", "PIL"}
+
+
 def test_public_names_are_there_and_no_others():
     assert set(img2tri.__all__) <= set(dir(img2tri))
     assert all(getattr(img2tri, name).__module__.startswith("img2tri.") for name in img2tri.__all__)

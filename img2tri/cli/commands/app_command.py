@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import webbrowser
 from argparse import Namespace, RawDescriptionHelpFormatter
 from contextlib import suppress
 from importlib.util import find_spec
@@ -52,6 +51,8 @@ def run_app(arguments: Namespace) -> int:
     def ready(address: str) -> None:
         tell([address])
         if not arguments.no_browser:
+            import webbrowser
+
             webbrowser.open(address)
 
     with suppress(KeyboardInterrupt):  # how it is meant to end
