@@ -27,8 +27,9 @@ from img2tri.raster.labels.segmentation import Segmentation, segment, without_sp
 from img2tri.raster.metadata.wanted_width import as_wide_as
 from img2tri.raster.reading import read
 from img2tri.raster.reading_decisions import decisions
-from img2tri.recipes.conforming import Sizes, conform, trace_outlines, wanted_sizes
+from img2tri.recipes.conforming import conform, trace_outlines
 from img2tri.recipes.mirrored import conform_symmetric
+from img2tri.recipes.wanted_sizes import Sizes, wanted_sizes
 from img2tri.shapes.mirror_symmetry import check_symmetric
 from img2tri.shapes.periodic.side_chains import check_periodic
 from img2tri.shapes.polygons import enclosed_areas

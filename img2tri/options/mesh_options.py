@@ -98,7 +98,7 @@ class BlockOptions(TypedDict, total=False):
 
 
 class SizeOptions(TypedDict, total=False):
-    """Options of `recipes.conforming.wanted_sizes`."""
+    """Options of `recipes.wanted_sizes.wanted_sizes`."""
 
     edge_length: Annotated[
         EdgeLength | None,

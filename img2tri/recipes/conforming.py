@@ -7,18 +7,16 @@ end of this road all outlines run through the middles between pixels, where they
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from img2tri.arrays import Floats, Ints, Points, as_complex, as_rows
-from img2tri.errors import ParameterError
+from img2tri.arrays import Bools, Floats, Ints, Points, as_complex, as_rows
 from img2tri.raster.labels.segmentation import Segmentation
 from img2tri.recipes.preserved_areas import with_areas_preserved
+from img2tri.recipes.wanted_sizes import Sizes
 from img2tri.shapes.periodic.paired_outlines import FILLINGS, PeriodicPairs, find_periodic_pairs
 from img2tri.shapes.periodic.side_chains import cut_alike
 from img2tri.shapes.place.placement import place_on_pixel_sides, place_outlines
@@ -27,9 +25,8 @@ from img2tri.shapes.simplify.tangential_relocation import relocate, slide_limits
 from img2tri.shapes.simplify.tolerance import split_near
 from img2tri.shapes.simplify.vertex_offsets import offset_vertices
 from img2tri.shapes.sizes.outline_sizes import by_chords, by_curvature, by_thickness, limit_growth
-from img2tri.shapes.sizes.user_size_field import EdgeLength, SizeField, size_field
 from img2tri.shapes.trace.crack_edges import find_crack_edges
-from img2tri.shapes.trace.dual_edges import DualEdges, pixel_areas
+from img2tri.shapes.trace.dual_edges import DualEdges
 from img2tri.shapes.trace.nonsquare_pixels import with_turning_points
 from img2tri.types import Frame, Outlines, RecipeMesh
 
@@ -39,11 +36,10 @@ if TYPE_CHECKING:
 Mesh = tuple[Floats, Ints, Ints]
 """Vertices (n, 2), triangles (m, 3) and regions (m,)."""
 
-USUAL_TRIANGLES = 2000  # what the default edge length aims at
+Posts = Callable[[Outlines], Bools]  # of dense outlines: which entries (k,) of their chains have to be vertices
 USUAL_SEGMENTS, SHORTEST_SHARE = 20, 1 / 3  # to a full turn by default; chords get no shorter for that than this share of the length wanted
 LASTING = 15  # dense points, 11 to 15 px: what turns within fewer is a corner
 RESPACINGS = 2  # how often outlines are spaced anew around places that need shorter chords
-MOST_TRIANGLES = 100_000_000  # some 2 GB of mesh, and several times that on the way
 LEAST_PIECE = 1e-3  # px; outlines are never cut so fine, so that this is as good as 0
 WAY_BACK = 0.7  # px: no point is farther from the middle of its link, or of its block
 CONFETTI = 3000  # outlines: so many are seldom wanted
@@ -80,78 +76,6 @@ def trace_outlines(
     return find_periodic_pairs(outlines, dual_edges, periodic).alike(outlines), dual_edges
 
 
-@dataclass(frozen=True, eq=False)
-class Sizes:
-    """Edge lengths wanted, in px.
-
-    Attributes
-    ----------
-    longest
-        The greatest length wanted anywhere.
-    field
-        Lengths over the image; None where it is the greatest everywhere.
-    boundary
-        Length along all outlines; None: as inside.
-    elements_across
-        How many edges at least across the thinnest places; None is not looked after.
-    segments_per_turn
-        How many edges at least to a full turn of an outline; None: `USUAL_SEGMENTS`, as far as `SHORTEST_SHARE` allows.
-    shortest
-        Edges of outlines are not made shorter than this for the sake of the above, only where tolerance or topology need it.
-    gradation
-        Growth of lengths per unit of distance.
-    """
-
-    longest: float
-    field: SizeField | None = None
-    boundary: float | None = None
-    elements_across: float | None = None
-    segments_per_turn: float | None = None
-    shortest: float = 0.0
-    gradation: float = 0.17
-
-
-def wanted_sizes(
-    edge_length: EdgeLength | None,
-    labels: NDArray[Any],
-    dual_edges: DualEdges,
-    frame: Frame,
-    *,
-    gradation: float = 0.17,
-    boundary_edge_length: float | str | None = None,
-    min_edge_length: float | str | None = None,
-    elements_across: float | None = None,
-    segments_per_turn: float | None = None,
-) -> Sizes:
-    """Turn what a user says of edge lengths into px.
-
-    Equilateral triangles of the default length fill the regions about `USUAL_TRIANGLES` times.
-    """
-    if edge_length is None:
-        longest, field = max(4.0, math.sqrt(pixel_areas(dual_edges)[1:].sum() / USUAL_TRIANGLES * 4 / math.sqrt(3))), None
-    else:
-        longest, field = size_field(edge_length, frame, labels, gradation=gradation)
-        _check_number(longest, field, float(pixel_areas(dual_edges)[1:].sum()), frame)
-    return Sizes(
-        longest,
-        field,
-        None if boundary_edge_length is None else frame.length("boundary_edge_length", boundary_edge_length) / frame.pixel,
-        elements_across,
-        segments_per_turn,
-        0.0 if min_edge_length is None else frame.length("min_edge_length", min_edge_length) / frame.pixel,
-        gradation,
-    )
-
-
-def _check_number(longest: float, field: SizeField | None, area: float, frame: Frame) -> None:
-    """Refuse lengths that would take more triangles than there is memory for, before any of it is used."""
-    lengths = np.clip(longest if field is None else field.grid, 1e-100, 1e100)
-    number = 4 / math.sqrt(3) * float((1 / lengths**2).mean()) * (area if field is None else field.grid.size * field.cell**2)
-    if number > MOST_TRIANGLES:
-        enough = f"; of one length for all, {math.sqrt(area * 4 / math.sqrt(3) / MOST_TRIANGLES) * frame.pixel:.2g} is the least"
-        raise ParameterError(f"edge_length: expected at most {MOST_TRIANGLES:,} triangles, found lengths for {number:.2g}{enough}")
-
-
 def conform(
     outlines: Outlines,
     dual_edges: DualEdges,
@@ -164,9 +88,14 @@ def conform(
     periodic: str | None = None,
     interior: str = "lattice",
     seed: int = 0,
+    node: complex | None = None,
+    posts: Posts | None = None,
     progress: Callable[[str, float], object] | None = None,
 ) -> RecipeMesh:
-    """Mesh all regions of an image, given its dense outlines; lengths in px."""
+    """Mesh all regions of an image, given its dense outlines; lengths in px.
+
+    Of a window that is to fit others, `node` is a place all have in their lattices, and `posts` tells which entries are vertices in all.
+    """
     from img2tri.triangles.generate.constrained_delaunay import PslgError
 
     outlines, dual_edges = with_turning_points(outlines, dual_edges, on_frame=periodic is None)
@@ -174,10 +103,11 @@ def conform(
     count = len(outlines.left)
     tell("spacing" if count < CONFETTI else f"spacing {count:,} outlines; min_area would drop specks", 0.3)
     pairs = find_periodic_pairs(outlines, dual_edges, periodic)
-    coarse = _spaced(outlines, dual_edges, pairs, sizes, tolerance, corners == "keep", keep_area)
+    posted = None if posts is None else posts(outlines)
+    coarse = _spaced(outlines, dual_edges, pairs, sizes, tolerance, corners == "keep", keep_area, posted)
     if keep_area:
         coarse = with_areas_preserved(coarse, pairs, tolerance=tolerance)
-    demands = _Demands(tolerance, min_angle, keep_area, interior, seed)
+    demands = _Demands(tolerance, min_angle, keep_area, interior, seed, node)
     yielding, began = tolerance, 0
     for attempt in range(ATTEMPTS):
         tell("triangles", 1 - 0.6 * 0.7**attempt)
@@ -212,6 +142,7 @@ class _Demands:
     keep_area: bool
     interior: str
     seed: int
+    node: complex | None
 
 
 def _filled(coarse: Simplification, pairs: PeriodicPairs, sizes: Sizes, demands: _Demands) -> tuple[Mesh | PslgError, Outlines, Floats]:
@@ -251,7 +182,7 @@ def _with_lattice(coarse: Simplification, chains: Outlines, sizes: Sizes, demand
     limits = slide_limits(coarse, shortest=sizes.shortest)
     begun = begin(
         chains.points, segments, left, right, edge_length=sizes.longest, gradation=sizes.gradation, size=sizes.field,
-        limits=limits, seed=demands.seed,
+        limits=limits, seed=demands.seed, node=demands.node,
     )  # fmt: skip
     # Opposite sides divided alike add points after those of the outlines; only the latter have their places there.
     own, added = np.split(begun.wanted, [len(limits)])
@@ -260,7 +191,14 @@ def _with_lattice(coarse: Simplification, chains: Outlines, sizes: Sizes, demand
 
 
 def _spaced(
-    outlines: Outlines, dual_edges: DualEdges, pairs: PeriodicPairs, sizes: Sizes, tolerance: float, keep_corners: bool, keep_area: bool
+    outlines: Outlines,
+    dual_edges: DualEdges,
+    pairs: PeriodicPairs,
+    sizes: Sizes,
+    tolerance: float,
+    keep_corners: bool,
+    keep_area: bool,
+    posts: Bools | None = None,
 ) -> Simplification:
     """Simplify the outlines to the lengths wanted, spaced evenly.
 
@@ -271,7 +209,7 @@ def _spaced(
     wanted = pairs.shared(limit_growth(_wanted(z, dual_edges, sizes), z, outlines.chains, sizes.gradation))
 
     def spaced(known: Simplification | None) -> Simplification:
-        new = space_evenly(outlines, dual_edges, spacing=wanted, keep_corners=keep_corners)
+        new = space_evenly(outlines, dual_edges, spacing=wanted, keep_corners=keep_corners, posts=posts)
         new = offset_vertices(new, tolerance=tolerance, keep_area=keep_area)
         return pairs.enforce_tolerance(new, tolerance=tolerance, passed=None if len(pairs.one) else known)
 

@@ -9,7 +9,8 @@ import numpy as np
 from img2tri.arrays import Floats, Ints
 from img2tri.errors import ParameterError
 from img2tri.raster.labels.segmentation import Segmentation
-from img2tri.recipes.conforming import Sizes, conform
+from img2tri.recipes.conforming import conform
+from img2tri.recipes.wanted_sizes import Sizes
 from img2tri.shapes.mirror_symmetry import half_outlines
 from img2tri.shapes.sizes.user_size_field import SizeField
 from img2tri.shapes.trace.dual_edges import DualEdges

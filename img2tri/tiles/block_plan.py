@@ -20,7 +20,7 @@ import numpy as np
 from img2tri.arrays import Bools, Floats, Points
 from img2tri.errors import ParameterError
 from img2tri.options.all_options import OPTIONS
-from img2tri.recipes.conforming import USUAL_TRIANGLES
+from img2tri.recipes.wanted_sizes import USUAL_TRIANGLES
 from img2tri.tiles.seams.both_meshes import Territory
 from img2tri.tiles.seams.join_blocks import TAKEN
 from img2tri.types import Frame

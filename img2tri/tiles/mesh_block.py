@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
 from typing import Any, cast
 
 import numpy as np
 
-from img2tri.arrays import Floats, Ints, Points, as_complex, as_rows, runs
+from img2tri.arrays import Bools, Floats, Ints, Points, as_complex, as_rows, runs
 from img2tri.certificate.outline_distance import SAMPLE_STEP, SegmentSet
 from img2tri.errors import Img2triError, MeshError
 from img2tri.options.all_options import MeshOptions, of
 from img2tri.options.mesh_options import FillOptions, OutlineOptions, SizeOptions
 from img2tri.raster.labels.segmentation import Segmentation
-from img2tri.recipes.conforming import conform, trace_outlines, wanted_sizes
-from img2tri.tiles.block_plan import SMOOTHED, Cell, Plan, colour
+from img2tri.recipes.conforming import conform, trace_outlines
+from img2tri.recipes.wanted_sizes import wanted_sizes
+from img2tri.tiles.block_plan import MARGIN_EDGES, SMOOTHED, Cell, Plan, colour
+from img2tri.tiles.outline_posts import find_posts
 from img2tri.tiles.piece_files import Lost, PieceStore, load_piece
 from img2tri.tiles.seams.both_meshes import Territory
 from img2tri.tiles.seams.join_blocks import merge
@@ -26,6 +30,7 @@ from img2tri.types import Frame, Outlines
 
 AT_ONCE = 10_000  # edges whose distances are measured at once, which bounds the memory of that
 GROSS = 1.0  # px beside twice the tolerance: what no outline of the mesh is off those of the image
+POSTED = 0.75  # margins: how far from borders of blocks posts of outlines are
 MARGIN_SCALES = (1, 2, 4)  # of the margin: where pieces do not fit, more is looked at and replaced
 
 
@@ -179,10 +184,29 @@ def window_mesh(zones: Segmentation, plan: Plan, rows: slice, columns: slice) ->
     if isinstance(lengths["edge_length"], np.ndarray):
         lengths["edge_length"] = lengths["edge_length"][rows, columns]
     sizes = wanted_sizes(labels=zones.labels, dual_edges=dual_edges, frame=frame, **lengths)
+    if sizes.field is not None:
+        sizes = replace(sizes, longest=max(sizes.longest, plan.margin / MARGIN_EDGES))  # one lattice for all windows
     within = frame.length("tolerance", o["tolerance"]) / frame.pixel
-    made = conform(outlines, dual_edges, sizes, corners=o["corners"], tolerance=within, **of(FillOptions, o))
     # The origin of the plane is where row 0 begins, or where the last row ends.
     shift = complex(*whole.plane(rows.stop if whole.upward else rows.start, columns.start))
+    several = plan.grid != (1, 1)
+    made = conform(
+        outlines, dual_edges, sizes, corners=o["corners"], tolerance=within,
+        node=-shift if several else None, posts=partial(_posts, plan, rows, columns, shift) if several else None, **of(FillOptions, o),
+    )  # fmt: skip
     none = np.zeros((0, 2), np.int64)
     piece = Piece(as_complex(made.vertices) + shift, made.triangles, outlines.labels[made.regions], none, none[:, 0])
     return piece, (as_complex(outlines.points) + shift, outlines)
+
+
+def _posts(plan: Plan, rows: slice, columns: slice, shift: complex, outlines: Outlines) -> Bools:
+    """Find posts on both sides of the borders of blocks that a window sees."""
+    away = POSTED * plan.margin
+    lines = []
+    for part, (seen, pixels) in enumerate(((columns, plan.frame.shape[1]), (rows, plan.frame.shape[0]))):
+        borders = np.arange(plan.block, pixels, plan.block)
+        borders = borders[(borders > seen.start) & (borders < seen.stop)]
+        places = plan.frame.plane(borders, np.zeros(len(borders))) if part else plan.frame.plane(np.zeros(len(borders)), borders)
+        at = places[:, 1] - shift.imag if part else places[:, 0] - shift.real
+        lines.append(np.concatenate([at - away, at + away]).tolist())
+    return find_posts(outlines, shift, (lines[0], lines[1]), 2 * away)

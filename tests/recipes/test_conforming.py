@@ -11,7 +11,8 @@ from benchmarks.shapes import gear, leaf
 from img2tri import mesh_image
 from img2tri.raster.labels.segmentation import Segmentation
 from img2tri.recipes import conforming
-from img2tri.recipes.conforming import Sizes, conform, trace_outlines
+from img2tri.recipes.conforming import conform, trace_outlines
+from img2tri.recipes.wanted_sizes import Sizes
 from img2tri.types import Frame
 
 

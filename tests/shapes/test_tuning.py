@@ -19,8 +19,9 @@ from benchmarks.shapes import blob, gear
 import img2tri.shapes
 from img2tri.arrays import as_complex, as_rows
 from img2tri.raster.labels.segmentation import Segmentation
-from img2tri.recipes.conforming import Sizes, _spaced, trace_outlines
+from img2tri.recipes.conforming import _spaced, trace_outlines
 from img2tri.recipes.preserved_areas import with_areas_preserved
+from img2tri.recipes.wanted_sizes import Sizes
 from img2tri.shapes.periodic.paired_outlines import find_periodic_pairs
 from img2tri.shapes.simplify.area_preservation import area_errors
 from img2tri.shapes.simplify.simplification import space_evenly

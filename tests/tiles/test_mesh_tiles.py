@@ -8,12 +8,21 @@ import numpy as np
 import oracles
 import pytest
 from scipy import ndimage
+from scipy.spatial import KDTree
+from scipy.stats import ks_2samp
 from specimens import MASKS, polycrystal
 
 from img2tri import FileError, ImageError, ParameterError, mesh_image, mesh_tiles
+from img2tri.arrays import as_complex
 from img2tri.certificate.report import certify
+from img2tri.options.all_options import checked
+from img2tri.raster.labels.segmentation import Segmentation
 from img2tri.tiles import block_plan, mesh_block
 from img2tri.tiles.parts.load_parts import load_tiles
+from img2tri.tiles.seams.both_meshes import ALIKE
+from img2tri.tiles.window_regions import cut_out
+from img2tri.triangles.min_angle_tangents import smallest_angles
+from img2tri.types import Frame
 
 
 def blobs(n=400, sigma=8.0, seed=0):
@@ -247,3 +256,35 @@ def test_every_kind_of_source_gives_the_same_mesh(tmp_path):
         made = mesh_tiles(source, tmp_path / "mesh.zarr", edge_length=4.0)
         found.add(b"".join(array.tobytes() for array in load_tiles(made.path)))
     assert len(found) == 1
+
+
+def test_windows_make_nearly_the_same_mesh_around_their_common_border(monkeypatch):
+    monkeypatch.setattr(block_plan, "BLOCK_SIDE", 256)
+    mask, edge = blobs(512, 12.0), 4.0
+    zones = Segmentation(mask, 0)
+    plan = block_plan.planned(Frame(mask.shape), dict(checked({"edge_length": edge}, function="mesh_tiles")), int(mask.sum()))
+    found = []
+    for cell in ((0, 0), (0, 1)):
+        rows, columns = plan.window(cell, plan.margin + block_plan.SMOOTHED)
+        mesh, _ = mesh_block.window_mesh(cut_out(zones, rows, columns), plan, rows, columns)
+        near = (abs(mesh.vertices.real - 256) < 2 * edge) & (mesh.vertices.imag > 300)
+        found.append(np.stack([mesh.vertices[near].real, mesh.vertices[near].imag], axis=1))
+    one, other = found
+    alike = KDTree(other).query(one)[0] < ALIKE * edge
+    assert len(alike) > 100
+    assert alike.mean() > 0.97  # .91 without posts, .85 with lattices of their own too
+
+
+def test_no_seam_is_to_be_seen():
+    mask = blobs(512, 10.0)
+    borders = 128 * np.arange(1, 4)
+    angles = []
+    for blocks in (False, True):
+        mesh = mesh_image(mask, edge_length=4.0, blocks=blocks)
+        middle = mesh.vertices[mesh.triangles].mean(axis=1)
+        near = (abs(middle[:, :, None] - borders) < 4).any(axis=(1, 2))
+        angles.append(smallest_angles(as_complex(mesh.vertices), mesh.triangles)[near])
+    plain, by_blocks = angles
+    assert len(by_blocks) > 1500
+    assert np.percentile(by_blocks, 1) > np.percentile(plain, 1) - 3
+    assert ks_2samp(plain, by_blocks).statistic < 0.05  # .10 without posts and one lattice

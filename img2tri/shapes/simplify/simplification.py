@@ -88,10 +88,12 @@ class Simplification:
         return Outlines(as_rows(self.places[entries]), chains, o.left, o.right, o.labels)
 
 
-def space_evenly(outlines: Outlines, dual_edges: DualEdges, *, spacing: float | Floats, keep_corners: bool = False) -> Simplification:
+def space_evenly(
+    outlines: Outlines, dual_edges: DualEdges, *, spacing: float | Floats, keep_corners: bool = False, posts: Bools | None = None
+) -> Simplification:
     """Keep vertices along each chain, `spacing` px apart: one length, or one at each entry (k,).
 
-    With `keep_corners` no corner of an outline is ever blunted.
+    With `keep_corners` no corner of an outline is ever blunted. Entries (k,) that are `posts` are vertices, from which spacing begins anew.
     """
     chains, starts = outlines.chains, outlines.chains.starts
     z = as_complex(outlines.points)[chains.indices]
@@ -101,22 +103,27 @@ def space_evenly(outlines: Outlines, dual_edges: DualEdges, *, spacing: float | 
     # How many chords fit before each entry: the integral of 1 / spacing along the chain.
     per_length = 1 / np.broadcast_to(np.asarray(spacing, np.float64), (k,))
     way = np.cumsum(step * (per_length + np.roll(per_length, 1)) / 2)
-    begin, length = way[starts[:-1]], way[starts[1:] - 1] - way[starts[:-1]]
-    size = np.diff(starts) - 1
-    least = np.where(chains.rings, np.minimum(RING, size), 1)
+    first, last, rings = chains.first, chains.last, chains.rings
+    if posts is not None and posts.any():
+        added = np.flatnonzero(posts)
+        first, last = np.sort(np.concatenate([first, added])), np.sort(np.concatenate([last, added]))
+        rings = rings[chains.chain[first]] & np.isin(first, chains.first) & np.isin(last, chains.last)
+    begin, length = way[first], way[last] - way[first]
+    size = last - first
+    least = np.where(rings, np.minimum(RING, size), 1)
     count = np.clip(np.round(length).astype(np.int64), least, size)
 
     # Even places along the way; each is taken by the nearest dense point, offset to it.
     which, number = runs(count)
     wanted = begin[which] + length[which] * number / count[which]
-    after = np.clip(np.searchsorted(way, wanted), starts[which] + 1, starts[which + 1] - 1)
+    after = np.clip(np.searchsorted(way, wanted), first[which] + 1, last[which])
     at = after - (wanted - way[after - 1] < way[after] - wanted)
     share = (wanted - way[after - 1]) / np.maximum(way[after] - way[after - 1], 1e-12)
     place = z[after - 1] + share * (z[after] - z[after - 1])
     kept, offset = np.zeros(k, bool), np.zeros(k, np.complex128)
-    inner = (number > 0) & (at > starts[which]) & (at < starts[which + 1] - 1)
+    inner = (number > 0) & (at > first[which]) & (at < last[which])
     offset[at[inner]] = (place - z[at])[inner]
     kept[at[inner]] = True
-    kept[chains.first] = kept[chains.last] = True
+    kept[first] = kept[last] = True
     pinned = dual_edges.is_corner if keep_corners else np.zeros(n, bool)
     return Simplification(outlines, dual_edges, z, pinned, kept, offset, np.zeros(n, bool))

@@ -12,7 +12,8 @@ import shapely
 from img2tri.arrays import Bools, Floats, Ints, Points, as_rows
 from img2tri.tiles.seams.piece_seams import Piece, Sides, seams_around
 
-SAME = 1e-6  # px: vertices nearer to each other are one; windows differ by 1e-10
+SAME = 1e-6  # px: vertices nearer to each other are one but for rounding
+ALIKE = 0.12  # of the shortest edge there: a vertex of the new mesh that is nearer to one of the finished pieces takes its place
 
 
 @dataclass(frozen=True)
@@ -34,6 +35,18 @@ class Territory:
     takes: Callable[[Points], Bools]
     margin: float
 
+    def around(self, places: Points, reach: float) -> Territory:
+        """Return the part of it that is near some places."""
+        from scipy.spatial import cKDTree
+
+        tree = cKDTree(as_rows(places))
+
+        def outside(z: Points) -> Floats:
+            distance: Floats = np.asarray(tree.query(as_rows(z.ravel()))[0])
+            return np.asarray(np.maximum(self.outside(z), distance.reshape(z.shape) - reach))
+
+        return Territory(outside, self.takes, self.margin)
+
 
 @dataclass(frozen=True, eq=False)
 class Both:
@@ -41,6 +54,7 @@ class Both:
 
     `border` has the finished pieces on its left, `own` and `beyond` are the codes of the regions on both sides;
     `fresh` are those edges of it beyond which finished triangles were given up. `cut` are the edges towards the core of the new mesh.
+    `moved` (n,) are the vertices of the new mesh that took the places of finished ones.
     """
 
     z: Points
@@ -54,6 +68,7 @@ class Both:
     beyond: Ints
     fresh: Bools
     cut: Ints
+    moved: Bools
 
     def covered(self, places: Points) -> Bools:
         """Tell which places lie in finished pieces, or on their border."""
@@ -68,19 +83,37 @@ class Both:
         return shapely.STRtree(shapely.polygons(as_rows(self.z[self.old.ravel()]).reshape(-1, 3, 2))) if len(self.old) else None
 
 
-def _on_finished(new: Points, finished: Points) -> Points:
-    """Put vertices that are a finished one but for rounding, as windows add in another order, where that is."""
+def _on_finished(mesh: Piece, finished: Points) -> Points:
+    """Return the vertices of a mesh, those that are nearly at the place of a finished one there.
+
+    Windows make nearly the same vertices of the same outlines and lattice; what they differ in comes from their frames, far away.
+    """
     from scipy.spatial import cKDTree
 
-    if not len(new) or not len(finished):
-        return new
-    distance, nearest = cKDTree(as_rows(finished)).query(as_rows(new), distance_upper_bound=SAME)
-    return np.where(distance < SAME, finished[np.minimum(nearest, len(finished) - 1)], new)
+    z = mesh.vertices
+    if not len(z) or not len(finished):
+        return z
+    shortest = np.full(len(z), np.inf)
+    for a, b in (mesh.triangles[:, [k, (k + 1) % 3]].T for k in range(3)):
+        length = np.abs(z[b] - z[a])
+        np.minimum.at(shortest, a, length)
+        np.minimum.at(shortest, b, length)
+    reach = np.maximum(ALIKE * np.where(np.isfinite(shortest), shortest, 0.0), SAME)
+    query = cKDTree(as_rows(finished)).query(as_rows(z), distance_upper_bound=float(reach.max()))
+    distance, nearest = np.asarray(query[0], np.float64), np.asarray(query[1], np.int64)
+    close = np.flatnonzero(distance < reach)
+    # Of several near one finished vertex the nearest has it.
+    close = close[np.lexsort((distance[close], nearest[close]))]
+    close = close[np.flatnonzero(np.diff(nearest[close], prepend=-1))]
+    result = z.copy()
+    result[close] = finished[nearest[close]]
+    return result
 
 
 def together(mesh: Piece, finished: Piece, lost: Bools, labels: Ints, territory: Territory, cut: Ints) -> Both:
     """Bring both into the same numbers; only what is near counts, and of the finished triangles those not given up."""
-    z, number = np.unique(np.concatenate([_on_finished(mesh.vertices, finished.vertices), finished.vertices]), return_inverse=True)
+    own = _on_finished(mesh, finished.vertices)
+    z, number = np.unique(np.concatenate([own, finished.vertices]), return_inverse=True)
     n, margin = len(z), territory.margin
     new, old = number[mesh.triangles], number[finished.triangles + len(mesh.vertices)]
     seam, beyond_seam = number[finished.seam + len(mesh.vertices)], finished.beyond
@@ -88,6 +121,8 @@ def together(mesh: Piece, finished: Piece, lost: Bools, labels: Ints, territory:
     if lost.any():
         seam, beyond_seam = seams_around(old, finished.regions, ~lost, seam, beyond_seam, n)
     outside = territory.outside(z)
+    moved = np.zeros(n, bool)
+    moved[number[np.flatnonzero(np.abs(own - mesh.vertices) > SAME)]] = True
     near = territory.outside(np.asarray(z[new].mean(axis=1), np.complex128)) < margin
     new, codes = new[near], np.searchsorted(labels, mesh.regions[near]) + 1
     near = (territory.outside(np.asarray(z[old].mean(axis=1), np.complex128)) < 2 * margin) & ~lost
@@ -103,4 +138,4 @@ def together(mesh: Piece, finished: Piece, lost: Bools, labels: Ints, territory:
         goes_on = keys[at] == wanted
         beyond[goes_on] = np.searchsorted(labels, beyond_seam[at[goes_on]]) + 1
     fresh = (beyond > 0) & ~np.isin(wanted, before)
-    return Both(z, outside, new, codes, old, old_codes, border, old_codes[owner], beyond, fresh, number[cut])
+    return Both(z, outside, new, codes, old, old_codes, border, old_codes[owner], beyond, fresh, number[cut], moved)

@@ -40,6 +40,11 @@ class Attempt:
     troubles: list[Points]
     reach: float
 
+    @property
+    def count(self) -> int:
+        """How many ways have been tried."""
+        return self.least + len(self.troubles)
+
     def raised(self, at: Points) -> Attempt:
         """Try the next way around some places; everywhere if there are none."""
         return Attempt(self.least, [*self.troubles, at], self.reach) if len(at) else Attempt(self.least + 1, self.troubles, self.reach)

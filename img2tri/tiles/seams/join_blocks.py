@@ -7,6 +7,7 @@ give way, and the gap is triangulated: the border stays, outlines are spliced, p
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -24,6 +25,7 @@ LOOSE_CLEARANCE = 0.66  # of the longest edge at a vertex: loose points nearer t
 SAMPLES = 4  # places along each edge of the border, to measure distances to
 # Of the margin: from where on stubs, walls and triangles of the gap do not count. It is open at its ends, beyond what is taken.
 WALLED, STUBS, FILLED, MET, LOST, TAKEN = 0.85, 0.8, 0.7, 0.6, 0.5, 0.35
+AROUND = 1.0  # margins: how far around places where a way of filling the gap did not do the next one is tried first
 CORE = 1.5  # margins: a triangle of the new mesh farther from finished pieces and borders of its block stays as it is
 
 
@@ -54,18 +56,50 @@ def merge(
     outside = territory.outside(mesh.vertices)
     reached = max(0.0, -float(territory.outside(finished.vertices).min(initial=0.0)))
     core = np.asarray((outside < -reached - CORE * territory.margin)[mesh.triangles].all(axis=1))
-    band, cut = core_set_aside(mesh, core)
+    joint = partial(_joined, finished=finished, labels=labels, off=off, tolerance=tolerance, min_angle=min_angle)
     attempt = Attempt(0, [], TAKEN * territory.margin)
+    while True:
+        try:
+            piece, lost = joint(mesh, core, territory=territory, attempt=attempt)
+            return core_put_back(mesh, core, piece), lost
+        except SeamError as error:
+            if attempt.count >= MOST_ATTEMPTS:
+                raise
+            attempt = _next_attempt(joint, mesh, core, territory, attempt.raised(error.at))
+
+
+def _next_attempt(joint: Callable[..., object], mesh: Piece, core: Bools, territory: Territory, attempt: Attempt) -> Attempt:
+    """Find a way that does where those before did not, looking at what is around these places only."""
+    while attempt.troubles and attempt.count < MOST_ATTEMPTS:
+        near = territory.around(np.concatenate(attempt.troubles), AROUND * territory.margin)
+        far = (near.outside(mesh.vertices) > CORE * territory.margin)[mesh.triangles].all(axis=1)
+        try:
+            joint(mesh, core | far, territory=near, attempt=attempt)
+            break
+        except SeamError as error:
+            attempt = attempt.raised(error.at)
+    return attempt
+
+
+def _joined(
+    mesh: Piece,
+    core: Bools,
+    *,
+    finished: Piece,
+    labels: Ints,
+    territory: Territory,
+    attempt: Attempt,
+    off: Callable[[Points, Ints], Floats],
+    tolerance: float,
+    min_angle: float,
+) -> tuple[Piece, Bools]:
+    """Join the mesh but for its core to finished pieces in one of the ways; return what it adds, and which triangles it replaces."""
+    band, cut = core_set_aside(mesh, core)
     middle = finished.vertices[finished.triangles].mean(axis=1)
     far = territory.outside(finished.vertices)[finished.triangles].max(axis=1) > LOST * territory.margin
-    for _ in range(MOST_ATTEMPTS):
-        lost = attempt.near(territory.margin * np.asarray(EATEN), middle) & ~far
-        both = together(band, finished, lost, labels, territory, cut)
-        try:
-            return core_put_back(mesh, core, _merged(both, labels, territory, attempt, off, tolerance, min_angle)), lost
-        except SeamError as error:
-            attempt, problem = attempt.raised(error.at), error
-    raise problem
+    lost = attempt.near(territory.margin * np.asarray(EATEN), middle) & ~far
+    both = together(band, finished, lost, labels, territory, cut)
+    return _merged(both, labels, territory, attempt, off, tolerance, min_angle), lost
 
 
 def _merged(
@@ -85,16 +119,20 @@ def _merged(
     triangles, code = new[stays], codes[stays]
     # The border of the finished pieces where no triangle that stays is on the other side.
     rim = goes_on & ~_met(both.border, triangles, len(z))
-    if (rim & (both.outside[both.border].max(axis=1) < FILLED * territory.margin)).any():
+    touched: Bools = np.asarray(both.moved[triangles].any(axis=1))
+    gaping = bool((rim & (both.outside[both.border].max(axis=1) < FILLED * territory.margin)).any())
+    if gaping:
         z, made, made_code = gap_filled(_gap(both, sides, stays, covered, rim, territory, attempt, tolerance))
         triangles, code = np.concatenate([triangles, made]), np.concatenate([code, made_code])
-        is_gap = np.arange(len(triangles)) >= len(triangles) - len(made)
+        touched = np.append(touched, np.ones(len(made), bool))
+    if touched.any():
         fixed = np.zeros(len(both.z), bool)
         fixed[both.old] = True
         fixed[both.cut] = True
         # An angle that the image's own corners force is no fault of the seam.
-        least = min(min_angle, float(smallest_angles(both.z, new).min()))
-        z, triangles, code = improved(z, triangles, code, is_gap, fixed, np.concatenate([both.border, both.cut]), least - 1e-9)
+        own = new[~both.moved[new].any(axis=1)]
+        least = min(min_angle, float(smallest_angles(both.z, own).min(initial=180.0)))
+        z, triangles, code = improved(z, triangles, code, touched, fixed, np.concatenate([both.border, both.cut]), least - 1e-9)
         _check_outlines(z, triangles, code, both, territory, off, tolerance)
     near = rim & (both.outside[both.border].max(axis=1) < MET * territory.margin)
     lonely = ~_met(both.border[near], triangles, len(z))
@@ -122,7 +160,7 @@ def _check_outlines(
     edges = edges[territory.outside(z[edges]).max(axis=1) < MET * territory.margin]
     known = _outline_edges(both.new, both.new_codes, len(z))
     known = known[both.outside[known].max(axis=1) < MET * territory.margin]
-    known = _other_than(known, both.cut, len(z))
+    known = _other_than(known[~both.moved[known].any(axis=1)], both.cut, len(z))
     for old in (known, both.border, both.cut):
         edges = _other_than(edges, old, len(z))
     if len(edges):

@@ -140,6 +140,7 @@ def begin(
     size: Floats | LengthField | None = None,
     limits: Floats | None = None,
     seed: int = 0,
+    node: complex | None = None,
 ) -> Filling:
     """Make a first mesh, and let the points slide to where its triangles want them.
 
@@ -157,6 +158,8 @@ def begin(
         How far each point may slide, parallel to the line between its neighbours; 0 for those that stay. None: all stay.
     seed : int
         0 centres the lattice on the points; another number shifts it by chance, for another mesh as good.
+    node : complex, optional
+        A place that is a node of the lattice, rather than its being centred.
 
     Returns
     -------
@@ -174,7 +177,7 @@ def begin(
     given, names = _coded(points, segments, left, right)
     sizes = _sizes(given, edge_length, gradation, size)
     pslg, at_points, at_middles = given.divided(sizes)
-    lattice = Lattice.over(pslg.points, edge_length, _shift(seed))
+    lattice = Lattice.over(pslg.points, edge_length, _shift(seed), node)
     strip = lay_strip(pslg, at_points, at_middles, sizes, lattice, MARGINS[0])
     try:
         mesh = relax_strip(strip, limits)

@@ -53,9 +53,15 @@ class Lattice:
     rows: int
 
     @classmethod
-    def over(cls, points: Points, pitch: float, shift: complex = 0) -> Lattice:
-        """Lay a lattice over all points, with a margin around them, centred up to a shift of at most half a pitch."""
+    def over(cls, points: Points, pitch: float, shift: complex = 0, node: complex | None = None) -> Lattice:
+        """Lay a lattice over all points, with a margin around them: centred up to a shift of at most half a pitch, or with a node there."""
         low, high = complex(points.real.min(), points.imag.min()), complex(points.real.max(), points.imag.max())
+        if node is not None:
+            # As many pitches, and pairs of rows, from there.
+            below = 2 * int(np.ceil(((node - low).imag / (ROW * pitch) + MARGIN) / 2))
+            origin = node - pitch * complex(int(np.ceil((node - low).real / pitch)) + MARGIN, ROW * below)
+            size = high - origin
+            return cls(origin, pitch, int(np.ceil(size.real / pitch)) + MARGIN + 1, int(np.ceil(size.imag / (ROW * pitch))) + MARGIN + 1)
         columns = int(np.ceil((high - low).real / pitch - ROW_ROUNDING)) + 2 * MARGIN
         rows = int(np.ceil((high - low).imag / (ROW * pitch) - ROW_ROUNDING)) + 2 * MARGIN
         centre = pitch * complex(columns / 2, ROW * rows / 2)
