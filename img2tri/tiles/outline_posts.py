@@ -24,8 +24,8 @@ from img2tri.types import Outlines
 
 APART = 0.5  # of the distance of two lines: posts on one outline are not nearer to each other
 LEAST_RING = 4.0  # times as long as posts are apart: rings that are shorter have none
-LOOKED_AT = 6  # crossings either way with which one is compared
-FRAME = 1.0  # px: what is nearer to the frame of a window ends there
+COMPARED = 6  # crossings either way with which one is compared
+AT_FRAME = 1.0  # px: what is nearer to the frame of a window ends there
 ODD = 0.1 + 0.1j  # px: no crossing lies half-way between two roundings
 
 
@@ -55,7 +55,7 @@ def find_posts(outlines: Outlines, shift: complex, lines: tuple[Sequence[float],
     chain = chains.chain[crossing]
     # What both windows see from end to end needs none; ends on the frame of a window are none.
     low, high = complex(z.real.min(), z.imag.min()), complex(z.real.max(), z.imag.max())
-    on_frame = (np.minimum(z.real - low.real, high.real - z.real) < FRAME) | (np.minimum(z.imag - low.imag, high.imag - z.imag) < FRAME)
+    on_frame = (np.minimum(z.real - low.real, high.real - z.real) < AT_FRAME) | (np.minimum(z.imag - low.imag, high.imag - z.imag) < AT_FRAME)
     far = (way[crossing] - way[chains.first[chain]] > apart) | on_frame[chains.first[chain]]
     far &= (way[chains.last[chain]] - way[crossing] > apart) | on_frame[chains.last[chain]]
     crossing = crossing[np.where(chains.rings[chain], length[chain] > LEAST_RING * apart, far)]
@@ -81,7 +81,7 @@ def _key(places: Points) -> Floats:
 def _least_around(key: Floats, way: Floats, chain: Ints, apart: float) -> Bools:
     """Tell which entries, in order along chains, have the least key of those less than so far apart."""
     least = np.ones(len(key), bool)
-    for k in range(1, LOOKED_AT + 1):
+    for k in range(1, COMPARED + 1):
         near = (chain[k:] == chain[:-k]) & (way[k:] - way[:-k] < apart)
         least[k:] &= ~near | (key[k:] < key[:-k])
         least[:-k] &= ~near | (key[:-k] <= key[k:])
