@@ -55,7 +55,8 @@ def find_posts(outlines: Outlines, shift: complex, lines: tuple[Sequence[float],
     chain = chains.chain[crossing]
     # What both windows see from end to end needs none; ends on the frame of a window are none.
     low, high = complex(z.real.min(), z.imag.min()), complex(z.real.max(), z.imag.max())
-    on_frame = (np.minimum(z.real - low.real, high.real - z.real) < AT_FRAME) | (np.minimum(z.imag - low.imag, high.imag - z.imag) < AT_FRAME)
+    to_frame = np.minimum(np.minimum(z.real - low.real, high.real - z.real), np.minimum(z.imag - low.imag, high.imag - z.imag))
+    on_frame = to_frame < AT_FRAME
     far = (way[crossing] - way[chains.first[chain]] > apart) | on_frame[chains.first[chain]]
     far &= (way[chains.last[chain]] - way[crossing] > apart) | on_frame[chains.last[chain]]
     crossing = crossing[np.where(chains.rings[chain], length[chain] > LEAST_RING * apart, far)]
