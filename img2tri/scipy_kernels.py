@@ -1,33 +1,54 @@
 """SciPy's compiled kernels, without the packages around them: to import `scipy.linalg` or `scipy.sparse` takes longer than a small mesh.
 
-In: where SciPy has an extension module. Out: that module. These packages import a good part of NumPy and of each other, 0.3 s in all, for
-the sake of what is not used here; the extension modules need none of it.
+Out: functions. These packages import a good part of NumPy and of each other, 0.3 s in all, for the sake of what is not used here; the
+extension modules in them need none of it. Where they are not where they were, what is public in SciPy is taken instead.
 """
 
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from functools import cache
 from importlib import import_module
 from importlib.machinery import PathFinder
 from importlib.util import module_from_spec
 from typing import Any
 
+MOVED = (ImportError, AttributeError)  # extension modules are SciPy's own, and may move
+
 
 @cache
-def scipy_kernel(package: str, name: str) -> Any:
-    """Return an extension module of SciPy: the one that is imported already, or else one loaded from its file, apart from its package.
+def banded_cholesky() -> tuple[Callable[..., Any], Callable[..., Any]]:
+    """Return LAPACK's ``dpbtrf``, which factors a symmetric banded matrix, and ``dpbtrs``, which solves equations by the factor."""
+    try:
+        lapack = _extension("linalg", "_flapack")
+        return lapack.dpbtrf, lapack.dpbtrs
+    except MOVED:
+        from scipy.linalg.lapack import dpbtrf, dpbtrs
 
-    Raises
-    ------
-    ImportError
-        SciPy has no such module; these are its own, and may move.
+        return dpbtrf, dpbtrs
 
-    Examples
-    --------
-    >>> scipy_kernel("linalg", "_flapack").dpbtrf
-    <fortran ...>
+
+@cache
+def csc_matvec() -> Callable[..., None]:
+    """Return the function that adds to a vector the product of a sparse matrix, stored by columns, with another vector.
+
+    Its arguments are both sizes of the matrix, where its columns end, the rows and values of its entries, and both vectors; they are not
+    looked at, which takes longer than the product of a small matrix.
     """
+    try:
+        return _extension("sparse", "_sparsetools").csc_matvec  # type: ignore[no-any-return]
+    except MOVED:
+        from scipy.sparse import csc_array
+
+        def add_product(n: int, m: int, ends: Any, rows: Any, data: Any, values: Any, out: Any) -> None:
+            out += csc_array((data, rows, ends), shape=(n, m)) @ values
+
+        return add_product
+
+
+def _extension(package: str, name: str) -> Any:
+    """Return an extension module of SciPy: the one that is imported already, or else one loaded from its file, apart from its package."""
     import scipy  # its start makes shared libraries known on Windows
 
     known = sys.modules.get(f"scipy.{package}.{name}")

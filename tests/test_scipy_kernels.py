@@ -5,38 +5,64 @@ import sys
 
 import numpy as np
 import pytest
+import scipy.linalg.lapack
+import scipy.sparse
 
-from img2tri.scipy_kernels import scipy_kernel
+from img2tri import scipy_kernels
 
 ALONE = """
 import sys
-from img2tri.scipy_kernels import scipy_kernel
-lapack, sums = scipy_kernel("linalg", "_flapack"), scipy_kernel("sparse", "_sparsetools")
+from img2tri.scipy_kernels import banded_cholesky, csc_matvec
+factor, add = banded_cholesky()[0], csc_matvec()
 assert not {"scipy.linalg", "scipy.sparse", "numpy.f2py"} & set(sys.modules)
 import numpy as np, scipy.linalg, scipy.sparse
 band = np.array([[4.0, 5, 6], [1, 2, 0]], order="F")
-assert np.array_equal(lapack.dpbtrf(band, lower=1)[0], scipy.linalg.cholesky_banded(band, lower=True))
-assert scipy.linalg.lapack.dpbtrf is not lapack.dpbtrf and scipy.sparse._sparsetools.csc_matvec
+assert np.array_equal(factor(band, lower=1)[0], scipy.linalg.cholesky_banded(band, lower=True))
+assert scipy.linalg.lapack.dpbtrf is not factor and scipy.sparse._sparsetools.csc_matvec
 """
 
 
-def test_a_kernel_comes_without_its_package_which_can_be_imported_after_it():
+@pytest.fixture(params=["where it is", "moved", "gone", "in no file"])
+def place(request, monkeypatch):
+    """Where the extension modules are."""
+    if request.param == "moved":
+        monkeypatch.setattr(scipy_kernels, "_extension", lambda *_: object())
+    elif request.param == "gone":
+        monkeypatch.setattr(scipy_kernels, "_extension", lambda *name: scipy_kernels.import_module("scipy.gone"))
+    elif request.param == "in no file":
+        monkeypatch.setattr(scipy_kernels, "PathFinder", type("Nowhere", (), {"find_spec": lambda *_: None}))
+        monkeypatch.delitem(sys.modules, "scipy.linalg._flapack")
+        monkeypatch.delitem(sys.modules, "scipy.sparse._sparsetools")
+    scipy_kernels.banded_cholesky.cache_clear()
+    scipy_kernels.csc_matvec.cache_clear()
+    yield
+    scipy_kernels.banded_cholesky.cache_clear()
+    scipy_kernels.csc_matvec.cache_clear()
+
+
+@pytest.mark.usefixtures("place")
+def test_banded_equations_are_solved():
+    dense = np.diag([4.0, 5, 6, 7]) + np.diag([1.0, 2, 0.5], 1) + np.diag([1.0, 2, 0.5], -1)
+    band = np.array([np.diag(dense), [*np.diag(dense, 1), 0]], order="F")
+    factor, solve = scipy_kernels.banded_cholesky()
+    found, failed = factor(band, lower=1)
+    assert failed == 0
+    assert np.allclose(solve(found, np.arange(4.0)[:, None], lower=1)[0][:, 0], np.linalg.solve(dense, np.arange(4.0)), rtol=1e-14)
+
+
+@pytest.mark.usefixtures("place")
+@pytest.mark.parametrize("kind", [float, complex])
+def test_products_are_added(kind):
+    matrix = scipy.sparse.csc_array(np.array([[1, 0, 2], [0, 3, 4]], kind) * (1 + 1j if kind is complex else 1))
+    values, out = np.array([1, 10, 100], kind), np.array([7, 8], kind)
+    scipy_kernels.csc_matvec()(2, 3, matrix.indptr, matrix.indices, matrix.data, values, out)
+    assert np.array_equal(out, [7, 8] + matrix.toarray() @ values)
+
+
+def test_kernels_come_without_their_packages_which_can_be_imported_after_them():
     subprocess.run([sys.executable, "-c", ALONE], check=True)
 
 
-def test_a_kernel_imported_already_is_the_same():
-    import scipy.linalg.lapack
-
-    scipy_kernel.cache_clear()
-    assert scipy_kernel("linalg", "_flapack").dpbtrs is scipy.linalg.lapack.dpbtrs
-
-
-def test_there_must_be_such_a_kernel():
-    with pytest.raises(ImportError):
-        scipy_kernel("linalg", "_nothing")
-
-
-def test_where_there_is_no_file_the_package_is_imported(monkeypatch):
-    monkeypatch.setattr("img2tri.scipy_kernels.PathFinder.find_spec", lambda *_: None)
-    scipy_kernel.cache_clear()
-    assert np.allclose(scipy_kernel("linalg", "_flapack").dpotrf(np.eye(2))[0], np.eye(2))
+def test_kernels_imported_already_are_the_same():
+    scipy_kernels.banded_cholesky.cache_clear()
+    assert scipy_kernels.banded_cholesky()[0] is scipy.linalg.lapack.dpbtrf

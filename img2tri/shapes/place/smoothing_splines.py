@@ -20,7 +20,7 @@ from __future__ import annotations
 import numpy as np
 
 from img2tri.arrays import Floats, Ints, Points, as_complex, as_rows
-from img2tri.scipy_kernels import scipy_kernel
+from img2tri.scipy_kernels import banded_cholesky
 from img2tri.shapes.place.along_the_arc import ArcLengths
 from img2tri.shapes.place.padded_chains import PaddedChains, convolve, gaussian
 
@@ -206,21 +206,21 @@ class _Equations:
 
     def solved(self, stiffness: float, b: Floats) -> Floats:
         """Solve for x (d, u), and once more for what rounding left: wide scales make D' D outweigh S by ten orders and more."""
-        lapack = scipy_kernel("linalg", "_flapack")
+        dpbtrf, dpbtrs = banded_cholesky()
         band = stiffness * self._squares
         band[:, 0] += self.share
         # Bands and right hand sides lie as LAPACK wants them: nothing is copied.
-        factor, failed = lapack.dpbtrf(band.T, lower=1, overwrite_ab=1)
+        factor, failed = dpbtrf(band.T, lower=1, overwrite_ab=1)
         if failed:
             raise np.linalg.LinAlgError("smoothing spline: the equations are not positive definite")
-        x = lapack.dpbtrs(factor, b.T, lower=1)[0].T
+        x = dpbtrs(factor, b.T, lower=1)[0].T
         at, count = self._numbering.at, self._factors.shape[1]
         along = x.take(at, axis=1)
         rows = self._factors[0] * along[:, :count]
         for i in range(1, 4):
             rows += self._factors[i] * along[:, i : i + count]
         left = b - self.share * x - stiffness * self.transposed(rows)
-        x += lapack.dpbtrs(factor, left.T, lower=1, overwrite_b=1)[0].T
+        x += dpbtrs(factor, left.T, lower=1, overwrite_b=1)[0].T
         return np.asarray(x)
 
 

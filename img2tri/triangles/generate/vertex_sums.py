@@ -12,17 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from img2tri.arrays import Floats, Ints, Points
-from img2tri.scipy_kernels import scipy_kernel
-
-try:
-    csc_matvec = scipy_kernel("sparse", "_sparsetools").csc_matvec
-except (ImportError, AttributeError):  # it is SciPy's own, and may move
-
-    def csc_matvec(n: int, m: int, ends: Any, entries: Any, data: Any, values: Any, out: Any) -> None:
-        """Add to `out` the product of a sparse matrix, given by columns, with the values."""
-        from scipy.sparse import csc_array
-
-        out += csc_array((data, entries, ends), shape=(n, m)) @ values
+from img2tri.scipy_kernels import csc_matvec
 
 
 class VertexSums:
@@ -43,5 +33,5 @@ class VertexSums:
     def of(self, values: NDArray[Any]) -> NDArray[Any]:
         """Return the sums (n,) of values (m,), which are of the kind of the factors."""
         sums = np.zeros(self._shape[0], self._factors.dtype)
-        csc_matvec(*self._shape, self._ends, self._entries, self._factors, values, sums)
+        csc_matvec()(*self._shape, self._ends, self._entries, self._factors, values, sums)
         return sums
