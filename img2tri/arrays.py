@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from img2tri.errors import bounded
+from img2tri.scipy_kernels import csr_tocsc
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -113,34 +114,40 @@ def unique_edges(triangles: Ints) -> tuple[Ints, Ints]:
     >>> edges.tolist(), sides.tolist()
     ([[0, 1], [0, 2], [0, 3], [1, 2], [2, 3]], [[0, 3, 1], [1, 4, 2]])
     """
-    short = triangles.astype(np.int32) if triangles.max(initial=0) < 2**31 else triangles  # half the memory to go through
-    start, end = short.ravel(), np.roll(short, -1, axis=1).ravel()
+    # Half the memory to go through, where numbers are small enough.
+    short = triangles.astype(np.int32 if max(triangles.max(initial=0), triangles.size) < 2**31 else np.int64)
+    start, end = short.ravel(), short.take([1, 2, 0], axis=1).ravel()
     lower, higher = np.minimum(start, end), np.maximum(start, end)
     # Least significant key first, as in a radix sort: each pass keeps the order of the one before where keys are equal.
     order = counting_sort(higher)
-    order = order[counting_sort(lower[order])]
-    lower, higher = lower[order], higher[order]
+    by_lower = lower.take(order)
+    again = counting_sort(by_lower)
+    order, lower = order.take(again), by_lower.take(again)
+    higher = higher.take(order)
     new = np.ones(len(order), bool)
     new[1:] = (lower[1:] != lower[:-1]) | (higher[1:] != higher[:-1])
-    sides = np.empty(len(order), np.int64)
-    sides[order] = np.cumsum(new) - 1
-    return np.stack([lower[new], higher[new]], axis=1).astype(np.int64), sides.reshape(triangles.shape)
+    first, sides = np.flatnonzero(new), np.empty(len(order), np.int64)
+    sides[order] = np.cumsum(new, dtype=short.dtype) - 1
+    edges = np.empty((len(first), 2), np.int64)
+    edges[:, 0], edges[:, 1] = lower.take(first), higher.take(first)
+    return edges, sides.reshape(triangles.shape)
 
 
-def counting_sort(keys: NDArray[Any]) -> Ints:
+def counting_sort(keys: NDArray[Any]) -> NDArray[Any]:
     """Return the order (n,) that sorts small numbers, equal ones in the order they have: in linear time, several times as fast as a sort.
+
+    Keys and order are int32, or both are int64.
 
     Examples
     --------
     >>> counting_sort(np.array([2, 0, 1, 0])).tolist()
     [1, 3, 2, 0]
     """
-    from scipy.sparse import csr_array
-
-    n, size = len(keys), int(keys.max(initial=0)) + 1
+    n, size, kind = len(keys), int(keys.max(initial=0)) + 1, keys.dtype
     # A matrix with one entry in each row; to store it by columns, SciPy counts.
-    matrix = csr_array((np.ones(n, np.int8), keys, np.arange(n + 1)), shape=(n, size))
-    return np.asarray(matrix.tocsc().indices, np.int64)
+    order, values = np.empty(n, kind), np.empty((2, n), np.int8)
+    csr_tocsc()(n, size, np.arange(n + 1, dtype=kind), keys, values[0], np.empty(size + 1, kind), order, values[1])
+    return order
 
 
 def independent(lower: Ints, higher: Ints, n: int) -> Bools:

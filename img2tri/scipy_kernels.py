@@ -47,6 +47,24 @@ def csc_matvec() -> Callable[..., None]:
         return add_product
 
 
+@cache
+def csr_tocsc() -> Callable[..., None]:
+    """Return the function that stores by columns a sparse matrix stored by rows.
+
+    Its arguments are both sizes, where rows end, columns and values of entries; and what it writes: where columns end, rows and values.
+    """
+    try:
+        return _extension("sparse", "_sparsetools").csr_tocsc  # type: ignore[no-any-return]
+    except MOVED:
+        from scipy.sparse import csr_array
+
+        def store(n: int, m: int, ends: Any, columns: Any, data: Any, out_ends: Any, out_rows: Any, out_data: Any) -> None:
+            made = csr_array((data, columns, ends), shape=(n, m)).tocsc()
+            out_ends[:], out_rows[:], out_data[:] = made.indptr, made.indices, made.data
+
+        return store
+
+
 def _extension(package: str, name: str) -> Any:
     """Return an extension module of SciPy: the one that is imported already, or else one loaded from its file, apart from its package."""
     import scipy  # its start makes shared libraries known on Windows

@@ -25,7 +25,8 @@ MAPS = sorted({path.parent for path in FILES})
 # Lowest first; the modules of one row do not import each other.
 ORDER = [
     {"errors"},
-    {"arrays", "scipy_kernels"},
+    {"scipy_kernels"},
+    {"arrays"},
     {"types", "cell_lists", "triangle_angles"},
     set(ROOMS),
     {"paper"},
@@ -43,7 +44,6 @@ ORDER = [
 FOLDERS = {*ROOMS, "paper", "recipes", "certificate", "options", "many", "tiles", "app", "cli"}  # their files may import each other
 # numpy is at home everywhere.
 LIBRARIES = {
-    "arrays": {"scipy"},  # sorts by counting
     "scipy_kernels": {"scipy"},
     "raster": {"cv2", "PIL", "tifffile", "pydicom", "nibabel", "scipy", "h5py", "zarr"},  # scipy joins runs of pixels to components
     "shapes": {"shapely", "scipy", "cv2"},  # cv2 measures distances to the places where lengths are given

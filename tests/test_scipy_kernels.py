@@ -35,9 +35,11 @@ def place(request, monkeypatch):
         monkeypatch.delitem(sys.modules, "scipy.sparse._sparsetools")
     scipy_kernels.banded_cholesky.cache_clear()
     scipy_kernels.csc_matvec.cache_clear()
+    scipy_kernels.csr_tocsc.cache_clear()
     yield
     scipy_kernels.banded_cholesky.cache_clear()
     scipy_kernels.csc_matvec.cache_clear()
+    scipy_kernels.csr_tocsc.cache_clear()
 
 
 @pytest.mark.usefixtures("place")
@@ -57,6 +59,15 @@ def test_products_are_added(kind):
     values, out = np.array([1, 10, 100], kind), np.array([7, 8], kind)
     scipy_kernels.csc_matvec()(2, 3, matrix.indptr, matrix.indices, matrix.data, values, out)
     assert np.array_equal(out, [7, 8] + matrix.toarray() @ values)
+
+
+@pytest.mark.usefixtures("place")
+@pytest.mark.parametrize("kind", [np.int32, np.int64])
+def test_matrices_are_stored_by_columns(kind):
+    ends, columns, data = np.array([0, 2, 2, 3], kind), np.array([0, 3, 0], kind), np.array([5, 6, 7], np.int8)
+    out = np.empty(5, kind), np.empty(3, kind), np.empty(3, np.int8)
+    scipy_kernels.csr_tocsc()(3, 4, ends, columns, data, *out)
+    assert [part.tolist() for part in out] == [[0, 2, 2, 2, 3], [0, 2, 0], [5, 7, 6]]
 
 
 def test_kernels_come_without_their_packages_which_can_be_imported_after_them():

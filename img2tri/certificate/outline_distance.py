@@ -108,8 +108,6 @@ def wrong_pixels(plane: Floats, triangles: Ints, number: Ints, curves: SegmentSe
 
     Dense outlines have all centres on their right side, so within the tolerance of these no edge passes one by as much.
     """
-    from scipy.spatial import cKDTree
-
     far = np.flatnonzero(curves.distance(origin.pixels) > (origin.tolerance or 0.0) - JUST_WITHIN)
     if not len(far):
         return np.zeros((0, 2))
@@ -117,18 +115,31 @@ def wrong_pixels(plane: Floats, triangles: Ints, number: Ints, curves: SegmentSe
     z, p = as_complex(plane), as_complex(origin.pixels[far])
     # Few triangles hold a pixel centre beside an outline: find them by their size, then by their three sides.
     near = _near(z, triangles, p)
-    corners = z[triangles[near]]
-    middle = corners.mean(axis=1)
-    reach = np.abs(corners - middle[:, None]).max(axis=1)
-    held = cKDTree(as_rows(p)).query_ball_point(as_rows(middle), reach * (1 + 1e-9))
-    triangle = np.repeat(near, [len(some) for some in held])
-    pixel = np.concatenate([np.asarray(some, np.int64) for some in held] or [np.zeros(0, np.int64)])
-    inside = np.ones(len(pixel), bool)
+    triangle, pixel = _around(z[triangles[near]], p)
+    triangle = near[triangle]
     for k in range(3):
         a, b = z[triangles[triangle, k]], z[triangles[triangle, (k + 1) % 3]]
-        inside &= cross(b - a, p[pixel] - a) >= 0
-    found[pixel[inside]] = number[triangle[inside]]
+        inside = cross(b - a, p[pixel] - a) >= 0
+        triangle, pixel = triangle[inside], pixel[inside]
+    found[pixel] = number[triangle]
     return np.asarray(origin.pixels[far[found != origin.pixel_regions[far]]])
+
+
+def _around(corners: Points, places: Points) -> tuple[Ints, Ints]:
+    """Pair triangles, given by corners (t, 3), with those of the places (k,) that are no farther from their middle than a corner is."""
+    middle = corners.mean(axis=1)
+    reach = np.abs(corners - middle[:, None]).max(axis=1) * (1 + 1e-9)
+    size, found = np.ceil(np.log2(reach)), [(np.zeros(0, np.int64), np.zeros(0, np.int64))]
+    for each in np.unique(size).tolist():
+        own = np.flatnonzero(size == each)
+        cell, above = cells(np.concatenate([middle[own], places]), float(reach[own].max()))
+        at, cell = np.split(cell, [len(own)])
+        order = np.argsort(cell)
+        triangle, place = pairs_across(own, at, order, cell[order], above)
+        close = np.abs(places[place] - middle[triangle]) <= reach[triangle]
+        found.append((triangle[close], place[close]))
+    triangle, place = (np.concatenate(part) for part in zip(*found, strict=True))
+    return triangle, place
 
 
 def _near(z: Points, triangles: Ints, places: Points) -> Ints:
