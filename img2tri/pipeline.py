@@ -117,7 +117,7 @@ def mesh_image(image: Any, *, progress: Callable[[str, float], None] | None = No
     mesh = TriangleMesh(
         frame.world(made.vertices), made.triangles, outlines.labels[made.regions], frame, _names(o, picture, outlines),
         Provenance(
-            o["recipe"], kept, kept | _chosen(o, picture, zones, sizes, within), outlines, *pixels_beside(dual_edges),
+            o["recipe"], kept, kept | _chosen(o, picture, zones, sizes, within), made.outlines or outlines, *pixels_beside(dual_edges),
             areas=pixel_areas(dual_edges) if zones.gray is None else enclosed_areas(outlines),  # gray values may place the outlines
             counted={**made.counted, "removed": {**removed, **zones.counted}}, notes=[*decisions(picture, zones), *warned],
             colours=label_colours(picture, outlines.labels[1:], quantized=o["colors"] is not None) if _labelled(o) else {},

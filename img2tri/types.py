@@ -286,9 +286,12 @@ class RecipeMesh:
         (m,) int64, region numbers.
     counted
         What was counted on the way, for the report.
+    outlines
+        The dense outlines, where these were set back for the sake of angles; None: they are what they were.
     """
 
     vertices: Floats
     triangles: Ints
     regions: Ints
     counted: dict[str, Any] = field(default_factory=dict)
+    outlines: Outlines | None = None

@@ -20,6 +20,7 @@ from img2tri.recipes.wanted_sizes import Sizes
 from img2tri.shapes.periodic.paired_outlines import FILLINGS, PeriodicPairs, find_periodic_pairs
 from img2tri.shapes.periodic.side_chains import cut_alike
 from img2tri.shapes.place.placement import place_on_pixel_sides, place_outlines
+from img2tri.shapes.simplify.set_back import set_back_near
 from img2tri.shapes.simplify.simplification import Simplification, space_evenly
 from img2tri.shapes.simplify.tangential_relocation import relocate, slide_limits
 from img2tri.shapes.simplify.tolerance import split_near
@@ -43,7 +44,9 @@ RESPACINGS = 2  # how often outlines are spaced anew around places that need sho
 LEAST_PIECE = 1e-3  # px; outlines are never cut so fine, so that this is as good as 0
 WAY_BACK = 0.7  # px: no point is farther from the middle of its link, or of its block
 CONFETTI = 3000  # outlines: so many are seldom wanted
+ENDLESS = 0.02  # px: where segments of opposite sides get so short, each side would divide the other again and again
 ATTEMPTS = 12  # rounds of refining the outlines; two are the most that ordinary images take
+SPLITTINGS, SPLITTINGS_NOT_SQUARE = 6, 3  # of these: rounds in which they are split and snapped within the tolerance, and nothing else
 
 
 def trace_outlines(
@@ -98,6 +101,7 @@ def conform(
     """
     from img2tri.triangles.generate.constrained_delaunay import PslgError
 
+    stretched = abs(dual_edges.pixel.real) != abs(dual_edges.pixel.imag)
     outlines, dual_edges = with_turning_points(outlines, dual_edges, on_frame=periodic is None)
     tell = progress or (lambda *_: None)
     count = len(outlines.left)
@@ -114,15 +118,21 @@ def conform(
         mesh, chains, doubtful = _filled(coarse, pairs, sizes, demands)
         if not len(doubtful) or attempt + 1 == ATTEMPTS:
             break
-        before = coarse
-        coarse = split_near(coarse, as_complex(doubtful), within=1.0 + 0.5 * (attempt - began), tolerance=yielding)
-        coarse = pairs.enforce_tolerance(coarse, tolerance=tolerance, passed=before)
-        same = (coarse.kept == before.kept).all() and (coarse.offset == before.offset).all()
-        if same and yielding >= WAY_BACK:
+        before: Simplification = coarse
+        passed: Simplification | None = coarse
+        places, reach = as_complex(doubtful), 1.0 + 0.5 * (attempt - began)
+        if stretched and began:
+            coarse, passed = set_back_near(coarse, places, within=2 * reach, alike=pairs.greatest), None
+        coarse = split_near(coarse, places, within=reach, tolerance=yielding)
+        coarse = pairs.enforce_tolerance(coarse, tolerance=tolerance, passed=passed)
+        if stretched and began and keep_area:
+            coarse = with_areas_preserved(coarse, pairs, tolerance=tolerance)
+        same = all((getattr(coarse, part) == getattr(before, part)).all() for part in ("kept", "offset", "dense"))
+        if same and (began if stretched else yielding >= WAY_BACK):
             break
-        if same or attempt + 1 == ATTEMPTS // 2:
-            # Rather too far from the outline than too sharp; the report tells.
-            yielding, began = max(tolerance, WAY_BACK), attempt + 1
+        if same or attempt + 1 == (SPLITTINGS_NOT_SQUARE if stretched else SPLITTINGS):
+            # Outlines of square pixels are rather left behind than too sharp, and the report tells; others can go back themselves.
+            yielding, began = yielding if stretched else max(tolerance, WAY_BACK), attempt + 1
     if isinstance(mesh, PslgError):
         raise mesh
     pairs.check(chains, mesh[0])
@@ -130,7 +140,7 @@ def conform(
     if sizes.shortest:
         first, last = coarse.chords
         counted["below_min_edge_length"] = int((abs(coarse.places[last] - coarse.places[first]) < sizes.shortest).sum())
-    return RecipeMesh(*mesh, counted)
+    return RecipeMesh(*mesh, counted, None if coarse.outlines is outlines else coarse.outlines)
 
 
 @dataclass(frozen=True)
@@ -164,14 +174,22 @@ def _filled(coarse: Simplification, pairs: PeriodicPairs, sizes: Sizes, demands:
 
                 made = scattered(chains, sizes.longest, sizes.field, min_angle=demands.min_angle, seed=demands.seed)
             filled, chains = chains, pairs.divided_alike(chains, made[0])
-            if chains is filled:
+            if chains is filled or _shortest(chains) < ENDLESS:
                 break
     except PslgError as error:
         segments = chains.segments[0]
         return error, chains, chains.points[segments[error.segments if len(error.segments) else slice(None)]].reshape(-1, 2)
     vertices, triangles, regions, irregular = made
     sharp = narrower(as_complex(vertices), triangles[:irregular], demands.min_angle - 1e-9)
-    return (vertices, triangles, regions), chains, vertices[triangles[:irregular][sharp]].reshape(-1, 2)
+    # Where opposite sides still differ, the points last added to them are at fault too.
+    doubtful = [vertices[triangles[:irregular][sharp]].reshape(-1, 2), chains.points[len(filled.points) :]]
+    return (vertices, triangles, regions), chains, np.concatenate(doubtful)
+
+
+def _shortest(chains: Outlines) -> float:
+    """Return the length of the shortest segment."""
+    one, other = as_complex(chains.points)[chains.segments[0]].T
+    return float(np.abs(other - one).min())
 
 
 def _with_lattice(coarse: Simplification, chains: Outlines, sizes: Sizes, demands: _Demands) -> tuple[Floats, Ints, Ints, int]:

@@ -194,6 +194,7 @@ def window_mesh(zones: Segmentation, plan: Plan, rows: slice, columns: slice) ->
         outlines, dual_edges, sizes, corners=o["corners"], tolerance=within,
         node=-shift if several else None, posts=partial(_posts, plan, rows, columns, shift) if several else None, **of(FillOptions, o),
     )  # fmt: skip
+    outlines = made.outlines or outlines
     none = np.zeros((0, 2), np.int64)
     piece = Piece(as_complex(made.vertices) + shift, made.triangles, outlines.labels[made.regions], none, none[:, 0])
     return piece, (as_complex(outlines.points) + shift, outlines)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from img2tri.arrays import Bools, Floats, Ints
+from img2tri.arrays import Bools, ChainIndex, Floats, Ints
 from img2tri.errors import MeshError, bounded
 from img2tri.shapes.periodic.paired_mesh_vertices import Walls, divided_alike
 from img2tri.shapes.periodic.side_chains import DIRECTIONS
@@ -82,6 +82,14 @@ class PeriodicPairs:
             if self._agree(s):
                 break
         return s
+
+    def greatest(self, values: Floats, chains: ChainIndex) -> Floats:
+        """Return values (n,) of the points of dense outlines where both points of each pair have the greater of theirs."""
+        result = values.copy()
+        for axis in (0, 1, 0):  # a corner of the image has a partner either way
+            one, other = (chains.indices[entries[self.axis == axis]] for entries in (self.one, self.other))
+            result[one] = result[other] = np.maximum(result[one], result[other])
+        return result
 
     def _agree(self, s: Simplification) -> bool:
         same = (s.kept[self.one] == s.kept[self.other]) & (self._along(s, self.one) == self._along(s, self.other))

@@ -100,9 +100,11 @@ def _opened_stretched(points: Points, dual_edges: DualEdges) -> Points:
         points[node] = points[beside] + (np.clip(off.real, -np.abs(off.imag), np.abs(off.imag)) + 1j * off.imag) * along
     shift = np.where(vector != 0, ((points - dual_edges.middle) / np.where(vector != 0, vector, 1)).real, 0.0)
     s = replace(s, points=np.where(vector != 0, dual_edges.middle, points))
-    s, shift = open_wedges(s, shift, dual_edges.blunt_middle, dual_edges.is_junction, dual_edges.bounds)
-    shift = exchange_areas(s, shift, wanted, *dual_edges.regions, pixel_areas(dual_edges))
-    return s.points + shift * vector
+    opened, shift = open_wedges(s, shift, dual_edges.blunt_middle, dual_edges.is_junction, dual_edges.bounds)
+    # What the crossings that are not beside junctions cannot give back, all do.
+    for free in (opened, replace(s, points=opened.points)):
+        shift = exchange_areas(free, shift, wanted, *dual_edges.regions, pixel_areas(dual_edges))
+    return opened.points + shift * vector
 
 
 def _bounded(dual_edges: DualEdges, points: Points, shift: Floats, slack: Floats) -> BoundedChains:

@@ -73,3 +73,25 @@ def test_label_maps_keep_all_promises(spacing):
         assert mesh.report.kept, mesh.report.warnings
         oracles.check_valid(mesh.vertices, mesh.triangles)
         assert oracles.angles(mesh.vertices, mesh.triangles).min() >= 30 - 1e-6
+
+
+def check_kept(labels, spacing, **options):
+    mesh = mesh_image(labels, labels=True, spacing=spacing, **options)
+    assert mesh.report.kept, mesh.report.warnings
+    oracles.check_valid(mesh.vertices, mesh.triangles)
+    assert oracles.angles(mesh.vertices, mesh.triangles).min() >= 30 - 1e-6
+
+
+@pytest.mark.parametrize("spacing", [(20.0, 1.0), (1.0, 8.0)])
+@pytest.mark.parametrize("name", ["one pixel", "islands of a pixel", "checkerboard of two", "comb", "three meet"])
+def test_needles_go_back_where_no_chord_is_blunt_enough(name, spacing):
+    check_kept(specimens.ALL[name].astype(int), spacing)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_random_label_maps_keep_all_promises_up_to_a_ratio_of_twenty(seed):
+    rng = np.random.default_rng(seed)
+    labels = rng.integers(0, rng.integers(2, 5), rng.integers(2, 6, 2))
+    spacing = (1.0, float(rng.choice([5, 12, 20])))[:: rng.choice([1, -1])]
+    options = ({}, {"tolerance": 1.25}, {"periodic": "xy"}, {"outline": "pixel"})[seed % 4]
+    check_kept(labels, spacing, edge_length=float(rng.uniform(3, 12)), **options)
