@@ -188,7 +188,7 @@ def load_mesh(path: str | os.PathLike[str]) -> TriangleMesh:
     ----------
     path
         A file that ends in .stl, .ply, .obj, .off, .glb, .3mf, .vtp, .vtu, .vtkhdf, .msh, .bdf, .inp, .mesh or .xdmf, with triangles in
-        one plane of constant z.
+        one plane of constant z; or a mesh in parts, .zarr, .pvtu or .vtkhdf, that `mesh_tiles` wrote and that fits in memory.
 
     Returns
     -------
@@ -204,9 +204,13 @@ def load_mesh(path: str | os.PathLike[str]) -> TriangleMesh:
     MeshError
         If it holds other cells, or triangles in space, such as a solid; ``img2tri quality`` measures these.
     """
+    from img2tri.tiles.parts.load_parts import in_parts, load_with_frame
     from img2tri.views.formats.readers.flat_mesh import flat_mesh
     from img2tri.views.formats.readers.known_sets import known_sets
 
+    if in_parts(path):
+        vertices, triangles, regions, frame = load_with_frame(path)
+        return TriangleMesh(vertices, triangles, regions, frame, {})
     flat = flat_mesh(path)
     mesh = TriangleMesh(flat.vertices, flat.triangles, flat.regions, flat.frame, flat.names)
     known = known_sets(flat, mesh.sets().edges) if flat.facets else {}

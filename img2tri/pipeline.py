@@ -24,6 +24,7 @@ from img2tri.raster.labels.meshing_warnings import meshing_warnings
 from img2tri.raster.labels.otsu_threshold import Level
 from img2tri.raster.labels.rgb_to_labels import colour_names, label_colours
 from img2tri.raster.labels.segmentation import Segmentation, segment, without_specks
+from img2tri.raster.labels.specks_and_holes import area_in_pixels
 from img2tri.raster.metadata.wanted_width import as_wide_as
 from img2tri.raster.reading import read
 from img2tri.raster.reading_decisions import decisions
@@ -83,7 +84,7 @@ def mesh_image(image: Any, *, progress: Callable[[str, float], None] | None = No
 
     tell("labels", 0.1)
     zones = segment(picture, **_with_paper_threshold(o))
-    specks, holes = (_in_pixels(name, o[name], frame) for name in ("min_area", "fill_holes"))
+    specks, holes = (area_in_pixels(name, o[name], frame) for name in ("min_area", "fill_holes"))
     zones, removed = without_specks(zones, min_area=specks, fill_holes=holes, largest=o["largest"], connectivity=o["connectivity"])
     warned = _forewarn(zones, frame, o, tell)
     check_periodic(o["periodic"], recipe=o["recipe"], smoothing=o["smoothing"])
@@ -155,13 +156,6 @@ def _asked_triangles(zones: Segmentation, frame: Frame, o: MeshOptions) -> float
         return None
     length = min(max(frame.length("edge_length", o["edge_length"]) / frame.pixel, 1e-100), 1e100)  # so that its square is a number
     return zones.labels.size * math.prod(frame.spacing) / frame.pixel**2 * 4 / math.sqrt(3) / length**2
-
-
-def _in_pixels(name: str, area: bool | float | str | None, frame: Frame) -> float | None:
-    """Return an area in pixels, infinity for True."""
-    if isinstance(area, bool) or area is None:
-        return math.inf if area else None
-    return frame.area(name, area) / math.prod(frame.spacing)
 
 
 def _with_paper_threshold(o: MeshOptions) -> SegmentOptions:

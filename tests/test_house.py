@@ -34,7 +34,8 @@ ORDER = [
     {"options"},
     {"mesh_pictures"},
     {"mesh_exports"},
-    {"mesh", "tiles"},
+    {"tiles"},
+    {"mesh"},
     {"pipeline"},
     {"many"},
     {"app"},
@@ -53,7 +54,7 @@ LIBRARIES = {
     "recipes": {"scipy"},
     "certificate": {"shapely", "scipy"},
     "mesh_pictures": {"matplotlib"},
-    "tiles": {"scipy", "shapely", "zarr", "h5py", "tifffile", "distributed", "vtkmodules"},
+    "tiles": {"scipy", "shapely", "zarr", "h5py", "tifffile", "distributed", "vtkmodules", "pyvista", "matplotlib"},
     "app": {"starlette", "uvicorn", "anywidget", "traitlets", "matplotlib"},
     "mesh_exports": {"skfem", "shapely", "trimesh", "pyvista"},  # for types only
     "mesh": {"matplotlib"},  # for types only

@@ -3,6 +3,7 @@
     mesh_tiles         `mesh_tiles`, every step in order: the place to begin reading
     pixel_source       the file or array the pixels come from, read window by window
     first_pass         what has to be known of the whole image: level, default edge length, a hash of all pixels -> the plan
+    cleaning           specks, holes and largest components, across blocks
     block_plan         the grid of blocks, their order in four colours, their territories; what each is meshed by
     blocks_in_memory   an image in memory by the same blocks: the same bits
     window_regions     the regions in a window, read or cut out
@@ -11,6 +12,7 @@
     seams              two neighbours fitted to each other: pieces, what is merged, gaps that are filled
     piece_files        pieces on disk, whole or not there, from which an interrupted run goes on; or in memory
     parts              the mesh in files of parts: zarr, .pvtu, .vtkhdf, each written by a worker; and read back
+    whole_files        files that are whole or not there
     run_tasks          a function called for each block, in this process or on a Dask cluster
 
     block    a square of the image, 2048 px, from which follows what is meshed at once; never from the tile

@@ -21,6 +21,7 @@ from img2tri.arrays import Bools, Floats, Points
 from img2tri.errors import ParameterError
 from img2tri.options.all_options import OPTIONS
 from img2tri.recipes.wanted_sizes import USUAL_TRIANGLES
+from img2tri.tiles.cleaning.cleaned_labels import CleanedLabels
 from img2tri.tiles.seams.both_meshes import Territory
 from img2tri.tiles.seams.join_blocks import TAKEN
 from img2tri.types import Frame
@@ -57,6 +58,8 @@ class Plan:
     level, gray
         Values strictly greater are foreground; None for label maps. Whether gray values place the outlines, at `place`, or at the middle
         between both sides if that is None.
+    cleaned
+        Pixels whose labels are others than the image has, as specks were dropped or holes filled; None: none.
     gaps, hues
         Whether pixels are missing anywhere, and whether labels are colours other than gray ones.
     options
@@ -72,6 +75,7 @@ class Plan:
     options: dict[str, Any] = field(default_factory=dict)
     gaps: bool = False
     hues: bool = False
+    cleaned: CleanedLabels | None = None
 
     @property
     def lengths(self) -> Floats | None:

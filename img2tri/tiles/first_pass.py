@@ -19,24 +19,21 @@ from numpy.typing import NDArray
 
 from img2tri import __version__
 from img2tri.arrays import Bools
-from img2tri.errors import ImageError, ParameterError
+from img2tri.errors import ImageError, ParameterError, finite
 from img2tri.options.all_options import OPTIONS, checked, plain
 from img2tri.raster.labels.colours_to_gray import to_gray
 from img2tri.raster.labels.cropping import frame_within
 from img2tri.raster.labels.otsu_threshold import otsu_class
 from img2tri.raster.labels.segmentation import check_thresholdable
 from img2tri.tiles.block_plan import Cell, Plan, planned, refuse_by_blocks
+from img2tri.tiles.cleaning.cleaned_labels import CleanedLabels
 from img2tri.tiles.pixel_source import PixelSource, digest
 from img2tri.tiles.window_regions import rgb_to_labels
 from img2tri.types import Frame
 
 REFUSED = {
-    "min_area": "components may span tiles; clean the label map before, or mesh_image(..., blocks=True)",
-    "fill_holes": "components may span tiles; clean the label map before, or mesh_image(..., blocks=True)",
-    "largest": "components may span tiles; clean the label map before, or mesh_image(..., blocks=True)",
     "colors": "colours are counted in the whole image; labels=True takes each as it is, or mesh_image(..., blocks=True)",
     "absorb": "neighbours may be far away; clean the label map before, or mesh_image(..., blocks=True)",
-    "width": "give spacing=, or mesh_image(..., blocks=True)",
     "page": "give the path of one plane, or an array",
 }
 
@@ -110,6 +107,10 @@ def first_plan(source: PixelSource, options: dict[str, Any]) -> tuple[PixelSourc
     if spacing == "file":
         raise ParameterError("spacing: expected numbers for an image by tiles, found 'file'")
     dx, dy = (1.0, 1.0) if spacing is None else (float(spacing),) * 2 if np.ndim(spacing) == 0 else (float(spacing[0]), float(spacing[1]))
+    if o["width"] is not None:
+        if spacing is not None:
+            raise ParameterError(f"width: expected to be left out with the size of a pixel, which says it too, found spacing {spacing!r}")
+        dx = dy = finite("width", o["width"], above=0) / source.shape[1]
     corner = (0.0, 0.0) if isinstance(o["origin"], str) else (float(o["origin"][0]), float(o["origin"][1]))
     whole = Frame(source.shape, (dx, dy), corner, upward=o["origin"] != "upper")
     frame, rows, columns = (whole, (0, 0), (0, 0)) if o["crop"] is None else frame_within(whole, o["crop"])
@@ -117,8 +118,11 @@ def first_plan(source: PixelSource, options: dict[str, Any]) -> tuple[PixelSourc
     return part, replace(planned(frame, o, math.prod(frame.shape)), options=o)
 
 
-def decided(plan: Plan, source: PixelSource, found: list[dict[str, Any]]) -> Plan:
-    """Decide what holds for the whole image, from what was found in each block, in the order of the blocks."""
+def decided(plan: Plan, source: PixelSource, found: list[dict[str, Any]], more: int = 0, cleaned: CleanedLabels | None = None) -> Plan:
+    """Decide what holds for the whole image, from what was found in each block, in the order of the blocks.
+
+    `more` pixels are in regions than in the image, as some were cleaned.
+    """
     o, frame = plan.options, plan.frame
     gaps = any(f["missing"] for f in found)
     if o["labels"]:
@@ -129,7 +133,7 @@ def decided(plan: Plan, source: PixelSource, found: list[dict[str, Any]]) -> Pla
             )
         hues, level = any(f["hues"] for f in found), None
         meshed, at = sum(f["meshed as colours" if hues else "meshed"] for f in found), ", only background; see background="
-        made = planned(frame, o, meshed, gaps=gaps, hues=hues)
+        made = planned(frame, o, meshed + more, gaps=gaps, hues=hues, cleaned=cleaned)
     else:
         if all("looks like labels" in f for f in found):
             raise ImageError(found[0]["looks like labels"])
@@ -143,9 +147,10 @@ def decided(plan: Plan, source: PixelSource, found: list[dict[str, Any]]) -> Pla
         else:
             meshed = sum(f["meshed"] for f in there)
         meshed = math.prod(frame.shape) - sum(f["missing"] for f in found) - meshed if o["invert"] else meshed
-        made = planned(frame, o, meshed, level=level, gray=gray, place=place, gaps=gaps)
+        made = planned(frame, o, meshed + more, level=level, gray=gray, place=place, gaps=gaps, cleaned=cleaned)
         at = f" above the threshold {level or 0:g} ({how}); try another threshold=, or invert=True"
-    if not meshed:
+    if meshed + more <= 0:
+        at += f"; {-more} were removed as too small; lower min_area=" if more else ""
         raise ImageError(f"image: expected pixels to mesh, found none{at}")
     return made
 

@@ -1,6 +1,7 @@
 """mesh_tiles: an image larger than memory -> a mesh in parts, block by block, on one process or a Dask cluster.
 
     survey    what holds for the whole: level, default edge length, a hash of the pixels          first_pass
+    clean     specks dropped, holes filled, the largest components kept, if that is asked for     cleaning
     mesh      each block in its window, fitted to its neighbours', colour by colour               mesh_block, join_blocks
     seams     every seam edge has its partner; numbers of vertices                                vertex_numbers
     save      each part by the worker that joins its blocks                                       tile_part, part_files
@@ -17,20 +18,28 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from img2tri.arrays import Floats, Ints
 from img2tri.errors import FileError, integer
 from img2tri.tiles.block_plan import Cell, Plan, colour
+from img2tri.tiles.cleaning.clean_blocks import clean_blocks
 from img2tri.tiles.first_pass import decided, fingerprint, first_plan, look
 from img2tri.tiles.mesh_block import mesh_block
+from img2tri.tiles.parts.overview_cells import OverviewCells, overview, overview_cells, overview_grid
 from img2tri.tiles.parts.part_files import FORMATS, PartFiles, part_files
 from img2tri.tiles.parts.tile_part import PartPlan, planned_parts, tile_part
 from img2tri.tiles.parts.vertex_numbers import Seam, numbered_vertices, seam_of
 from img2tri.tiles.parts.whole_report import added_up, block_facts, whole_report
-from img2tri.tiles.piece_files import PieceFolder, PieceStore, load_piece, write
+from img2tri.tiles.piece_files import PieceFolder, PieceStore, load_piece
 from img2tri.tiles.pixel_source import PixelSource, open_source
 from img2tri.tiles.run_tasks import done
+from img2tri.tiles.whole_files import write
 from img2tri.tiles.window_regions import read_regions
+from img2tri.types import Frame
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 TilesProgress = Callable[[str, float], object]
 
@@ -48,6 +57,11 @@ class TiledMesh:
     report
         What is known of the whole, as plain data: options, counts, the worst angle, areas, the farthest edge from the outlines, seams,
         components less holes of a mask; `warnings` has one line for each promise that is not kept.
+    frame
+        Where the image lies.
+    labels, angles
+        The overview: rows and columns of cells, each at least two edges wide, with the label that has the largest area in it, and its
+        smallest angle in degrees, NaN where there is no triangle.
     """
 
     path: Path
@@ -55,6 +69,21 @@ class TiledMesh:
     n_triangles: int
     n_parts: int
     report: dict[str, Any]
+    frame: Frame
+    labels: Ints
+    angles: Floats
+
+    def plot(self, path: str | os.PathLike[str] | None = None) -> Figure:
+        """Draw an overview: regions, and where the worst angles are; no edges, of which there may be too many.
+
+        Parameters
+        ----------
+        path
+            Where to write it, .png, .svg or .pdf; None: nowhere.
+        """
+        from img2tri.views.figures.overview import draw_overview
+
+        return draw_overview(self.labels, self.angles, self.frame, path)
 
 
 def mesh_tiles(
@@ -118,8 +147,10 @@ def mesh_tiles(
     cells = list(plan.cells())
     found = dict(done(client, "survey", look, _by_name(cells), (image, plan), lambda share: tell("survey", 0.1 * share)))
     in_order = [found[name] for name in _by_name(cells)]
-    plan = decided(plan, image, in_order)
+    undecided, plan = plan, decided(plan, image, in_order)
     folder = _workplace(target, fingerprint(plan, in_order))
+    cleaned, removed, more = clean_blocks(client, image, plan, folder, lambda _: tell("survey", 0.1))
+    plan = decided(undecided, image, in_order, more, cleaned)
     store = PieceFolder(folder)
 
     facts: dict[str, dict[str, Any]] = {}
@@ -138,7 +169,8 @@ def mesh_tiles(
     of_cell = dict(zip(cells, numbering, strict=True))
     known = {cell: seams[name][1] for name, cell in _by_name(cells).items()}
     seam_edges = sum(len(seam.edges) for seam, _ in seams.values()) // 2
-    report = whole_report(plan, image.name, [facts[name] for name in _by_name(cells)], list(known.values()), total, seam_edges)
+    blocks = [facts[name] for name in _by_name(cells)]
+    report = whole_report(plan, image.name, blocks, list(known.values()), total, seam_edges) | {"removed": removed}
 
     tell("save", 0.95)
     parts = {part.name: part for part in planned_parts(plan, tile, of_cell)}
@@ -146,14 +178,14 @@ def mesh_tiles(
     tasks = {name: (part, added_up([known[cell] for cell in part.cells])) for name, part in parts.items()}
     try:
         files.begin(list(parts.values()))
-        for _ in done(client, "save", _save, tasks, (plan, store, files), lambda share: tell("save", 0.95 + 0.05 * share)):
-            pass
+        drawn = dict(done(client, "save", _save, tasks, (plan, store, files), lambda share: tell("save", 0.95 + 0.05 * share)))
         files.finish(list(parts.values()), report)
     except OSError as problem:
         raise FileError(f"{target}: cannot be written: {problem.strerror or problem}; what is done stays, run it again then") from problem
     shutil.rmtree(folder)
     tell("done", 1.0)
-    return TiledMesh(target, total, report["n_triangles"], len(parts), report)
+    seen = overview([drawn[name] for name in parts], overview_grid(plan)[1])
+    return TiledMesh(target, total, report["n_triangles"], len(parts), report, plan.frame, *seen)
 
 
 def _by_name(cells: Iterable[Cell]) -> dict[str, Cell]:
@@ -170,9 +202,11 @@ def _seam(plan: Plan, store: PieceStore, cell: Cell) -> tuple[Seam, dict[str, An
     return seam_of(piece, plan, cell), block_facts(piece, plan)
 
 
-def _save(plan: Plan, store: PieceStore, files: PartFiles, task: tuple[PartPlan, dict[str, Any]]) -> None:
-    part, facts = task
-    files.write(tile_part(plan, store, part), part, facts)
+def _save(plan: Plan, store: PieceStore, files: PartFiles, task: tuple[PartPlan, dict[str, Any]]) -> OverviewCells:
+    wanted, facts = task
+    part = tile_part(plan, store, wanted)
+    files.write(part, wanted, facts)
+    return overview_cells(part, plan)
 
 
 def _workplace(target: Path, hashed: str) -> Path:

@@ -7,9 +7,6 @@ from __future__ import annotations
 
 import io
 import json
-import os
-import secrets
-from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
@@ -17,9 +14,9 @@ from typing import Any, Protocol
 import numpy as np
 
 from img2tri.arrays import Ints
-from img2tri.errors import FileError
 from img2tri.tiles.block_plan import Cell, Plan, colour
 from img2tri.tiles.seams.piece_seams import Piece, without
+from img2tri.tiles.whole_files import write
 
 ARRAYS = ("vertices", "triangles", "regions", "seam", "beyond")
 Lost = dict[Cell, Ints]
@@ -106,22 +103,6 @@ class PieceFolder:
 
 def _lost_name(cell: Cell) -> str:
     return f"lost_{cell[0]}_{cell[1]}"
-
-
-def write(path: Path, data: bytes) -> None:
-    """Write a file beside its place, and then put it there."""
-    temporary = path.with_name(f".{path.name}-{secrets.token_hex(6)}")
-    try:
-        with open(temporary, "xb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(temporary, path)
-    except OSError as problem:
-        raise FileError(f"{path}: cannot be written: {problem.strerror or problem}; what is done stays, run it again then") from problem
-    finally:
-        with suppress(OSError):
-            temporary.unlink()
 
 
 def load_piece(store: PieceStore, plan: Plan, cell: Cell, before: int = 4) -> tuple[Piece, Ints]:

@@ -38,7 +38,8 @@ def cut_out(zones: Segmentation, rows: slice, columns: slice) -> Segmentation:
 
 def read_regions(source: PixelSource, plan: Plan, rows: slice, columns: slice) -> Segmentation:
     """Read a window, and find the regions in it by what was decided for the whole image."""
-    return segmentation(*source.read(rows, columns), plan)
+    zones = segmentation(*source.read(rows, columns), plan)
+    return zones if plan.cleaned is None else replace(zones, labels=plan.cleaned.over(zones.labels, rows, columns))
 
 
 def segmentation(values: NDArray[Any], missing: Bools | None, plan: Plan) -> Segmentation:

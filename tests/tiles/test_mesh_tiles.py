@@ -109,6 +109,7 @@ CASES = {
     "some labels": (LABELS, {"edge_length": {1: 3.0, 2: 4.0, 3: 4.0}, "labels": [1, 2, 3], "origin": "upper"}),
     "gray": (LABELS, {"threshold": 1, "tolerance": 0.8, "elements_across": 2.0, "edge_length": 4.0, "invert": True}),
     "crop": (LABELS, {"edge_length": 4.0, "labels": True, "crop": (10, 20.5, 170, 175), "origin": (3, 4)}),
+    "width": (LABELS, {"edge_length": 2.0, "labels": True, "width": 90, "crop": (10, 20, 80, 85)}),
     "colours": (COLOURS, {"edge_length": 4.0, "labels": True}),
     "a colour": (COLOURS, {"edge_length": 4.0, "labels": [0xC81E1E], "background": 0}),
     "luminance": (COLOURS, {"edge_length": 4.0, "threshold": 80}),

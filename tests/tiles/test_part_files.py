@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from img2tri import mesh_tiles
+from img2tri import FileError, load, mesh_image, mesh_tiles
 from img2tri.tiles import block_plan, run_tasks
 from img2tri.tiles import mesh_tiles as module
 from img2tri.tiles.parts.part_files import FORMATS
@@ -101,3 +101,36 @@ def test_what_a_cluster_forgets_is_asked_for_again(monkeypatch):
     found = dict(run_tasks.done(client, "double", lambda factor, n: factor * n, {"a": 1, "b": 2, "c": 3}, (2,), lambda _: None))
     assert found == {"a": 2, "b": 4, "c": 6}
     assert client.asked == 4
+
+
+@pytest.mark.parametrize("suffix", FORMATS)
+def test_load_reads_the_whole_with_its_frame(suffix, tmp_path):
+    options = {"edge_length": 2.0, "spacing": (0.5, 0.25), "origin": (3, 4)}
+    made = mesh_tiles(MASK, tmp_path / f"mesh{suffix}", tile=128, **options)
+    mesh = load(made.path)
+    plain = mesh_image(MASK, blocks=True, **options)
+    assert mesh.frame == plain.frame
+    assert mesh.vertices.tobytes() == plain.vertices.tobytes()
+    assert set(map(tuple, mesh.triangles)) == set(map(tuple, plain.triangles))
+    assert mesh.sets().edges.keys() == plain.sets().edges.keys()
+
+
+@pytest.mark.parametrize("name", ["none.zarr", "none.pvtu", "some.pvtu"])
+def test_what_is_no_mesh_in_parts_is_told(name, tmp_path):
+    (tmp_path / "some.pvtu").write_text("<VTKFile/>")
+    with pytest.raises(FileError, match="expected a mesh made by mesh_tiles"):
+        load(tmp_path / name)
+
+
+@pytest.mark.parametrize("origin", ["lower", "upper"])
+def test_the_overview_is_drawn_from_parts(origin, tmp_path):
+    labels = np.where(MASK, 2, 0) + 5 * (np.mgrid[:200, :220][0] > 150)
+    made = mesh_tiles(labels, tmp_path / "mesh.zarr", edge_length=4.0, labels=True, origin=origin, tile=128)
+    assert made.labels.shape == made.angles.shape == (25, 28)
+    assert np.nanmin(made.angles) == made.report["smallest_angle"]
+    middle = labels[4::8][:, np.minimum(np.arange(4, 224, 8), 219)]
+    clear = np.array([[len(np.unique(labels[i : i + 8, j : j + 8])) == 1 for j in range(0, 220, 8)] for i in range(0, 200, 8)])
+    assert (made.labels[clear] == middle[clear]).all()
+    assert (np.isnan(made.angles)[clear] == (middle == 0)[clear]).all()
+    made.plot(tmp_path / "overview.png")
+    assert (tmp_path / "overview.png").stat().st_size > 10_000

@@ -36,6 +36,7 @@ def add_tiles(commands: Any) -> None:
     tiles.add_argument("--tile", type=whole_number, default=2048, metavar="N", help="px of the image that a part covers (default 2048)")
     tiles.add_argument("--workers", type=whole_number, default=1, metavar="N", help="processes on this machine (default 1: this one)")
     tiles.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster, such as tcp://10.0.0.1:8786")
+    tiles.add_argument("--plot", metavar="PICTURE", help="an overview of regions and worst angles, .png, .svg or .pdf")
     tiles.add_argument("--quiet", action="store_true", help="print errors only")
     add_mesh_options(tiles)
 
@@ -49,6 +50,8 @@ def run_tiles(arguments: Namespace) -> int:
         made = mesh_tiles(
             arguments.image, arguments.output, tile=arguments.tile, client=client, progress=partial(bar, 0), **mesh_options(arguments)
         )
+    if arguments.plot:
+        made.plot(arguments.plot)
     if not arguments.quiet:
         report = made.report
         tell(
@@ -57,7 +60,7 @@ def run_tiles(arguments: Namespace) -> int:
                 f"{'seams':<12}{report['seam_edges']:,} edges, all of them fit",
                 f"{'angles':<12}{report['smallest_angle']:.4g} degrees at least",
                 f"{'outlines':<12}{report['distance']:.4g} off at most",
-                f"{'saved':<12}{arguments.output}",
+                f"{'saved':<12}{', '.join(str(name) for name in (arguments.output, arguments.plot) if name)}",
             ]
         )
     for warning in made.report["warnings"]:

@@ -11,6 +11,9 @@ they were: gray values still tell where they run.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+from functools import partial
 from typing import Any, TypedDict
 
 import numpy as np
@@ -20,6 +23,7 @@ from img2tri.arrays import Bools, Ints
 from img2tri.errors import ParameterError, finite, shown
 from img2tri.raster.labels.connected_components import Components, connected, find_components, joined
 from img2tri.raster.labels.rgb_to_labels import LabelMap
+from img2tri.types import Frame
 
 LISTED = 100  # components listed in the report at most
 AREA_ROUNDING = 1e-9  # limits come from lengths in world units
@@ -93,34 +97,49 @@ def clean(
     >>> removed["specks"], removed["listed"][1]
     (2, {'label': 3, 'area': 1, 'row': 1, 'column': 1, 'became': 1})
     """
-    limit = 0.0 if min_area is None else finite("min_area", min_area, least=0) * (1 - AREA_ROUNDING)
     if connectivity not in (4, 8):
         raise ParameterError(f"connectivity: expected 4 or 8, found {shown(connectivity)}")
     values, removed = labels.values, Removed(specks=0, holes=0, pixels=0, listed=[])
-    holes = 0.0 if fill_holes is None or labels.background is None else fill_holes * (1 - AREA_ROUNDING)
-    steps: list[tuple[str, float]] = (
-        [("holes", holes)] * (holes > 1) + [("specks", limit)] * (limit > 1) + [("largest", 0.0)] * bool(largest)
-    )
+    steps = cleaning_steps(min_area=min_area, fill_holes=fill_holes, largest=largest, background=labels.background)
     changed = True
     while changed:
         # A removal may part another component where it was joined through a corner; hardly any image needs a second turn.
         changed = False
         for what, least in steps:
             parts = find_components(values, background=labels.background, connectivity=connectivity)
-            number = _numbers_after(parts, what, least, labels.background, connectivity, values.shape)
+            number = numbers_after(parts, what, least, labels.background, connectivity, partial(_at_frame, parts, values.shape))
             if (number != parts.number).any():
                 changed = True
-                removed = _added(removed, parts, number, values.shape[1])
+                removed = added(removed, parts, number, values.shape[1])
                 values = _written(values, parts, number)
     return (LabelMap(values, labels.background) if removed["pixels"] else labels), removed
 
 
-def _numbers_after(parts: Components, what: str, least: float, background: int | None, connectivity: int, shape: tuple[int, ...]) -> Ints:
-    """Return the label each component has after the removal of holes, or of all, with an area below `least`, or of all but the largest."""
+def area_in_pixels(name: str, area: bool | float | str | None, frame: Frame) -> float | None:
+    """Return an area given by a user in pixels, infinity for True."""
+    if isinstance(area, bool) or area is None:
+        return math.inf if area else None
+    return frame.area(name, area) / math.prod(frame.spacing)
+
+
+def cleaning_steps(*, min_area: float | None, fill_holes: float | None, largest: bool, background: int | None) -> list[tuple[str, float]]:
+    """Return what is removed one after the other, "holes", "specks" or "largest", and below which area; arguments as for `clean`."""
+    limit = 0.0 if min_area is None else finite("min_area", min_area, least=0) * (1 - AREA_ROUNDING)
+    holes = 0.0 if fill_holes is None or background is None else fill_holes * (1 - AREA_ROUNDING)
+    return [("holes", holes)] * (holes > 1) + [("specks", limit)] * (limit > 1) + [("largest", 0.0)] * bool(largest)
+
+
+def numbers_after(
+    parts: Components, what: str, least: float, background: int | None, connectivity: int, at_frame: Callable[[], Bools]
+) -> Ints:
+    """Return the label each component has after the removal of holes, or of all, with an area below `least`, or of all but the largest.
+
+    Labels are indices into `parts.values`; `at_frame` tells which components reach the frame of the image.
+    """
     if what == "largest":
         keep = _largest(parts)
     elif what == "holes":
-        keep = (parts.number != 0) | (parts.area >= least) | _at_frame(parts, shape)
+        keep = (parts.number != 0) | (parts.area >= least) | at_frame()
     else:
         keep = parts.area >= least
     if keep.all():
@@ -161,7 +180,7 @@ def _absorbed(parts: Components, keep: Bools, least: float, connectivity: int) -
     while True:
         # Kept ones never change, so what lies among them alone no longer matters.
         near = ~(keep[one] & keep[other])
-        one, other, sides = _summed(one[near], other[near], sides[near])
+        one, other, sides = summed(one[near], other[near], sides[near])
         corners = corners[~keep[corners].all(axis=1)]
         if not len(one):
             return number[group]
@@ -175,7 +194,7 @@ def _absorbed(parts: Components, keep: Bools, least: float, connectivity: int) -
         one, other, corners, group = into[one], into[other], into[corners], into[group]
 
 
-def _summed(one: Ints, other: Ints, sides: Ints) -> tuple[Ints, Ints, Ints]:
+def summed(one: Ints, other: Ints, sides: Ints) -> tuple[Ints, Ints, Ints]:
     """Bring pairs of different groups into order, each once, with the number of sides they share in all."""
     lower, higher = np.minimum(one, other), np.maximum(one, other)
     apart = lower != higher
@@ -233,7 +252,7 @@ def _written(values: NDArray[Any], parts: Components, number: Ints) -> NDArray[A
     return written
 
 
-def _added(removed: Removed, parts: Components, number: Ints, width: int) -> Removed:
+def added(removed: Removed, parts: Components, number: Ints, width: int) -> Removed:
     """Add the components that change their label to what was removed before."""
     gone = np.flatnonzero(number != parts.number)
     holes = int((parts.number[gone] == 0).sum())

@@ -60,6 +60,7 @@ def whole_report(plan: Plan, source: str, blocks: Sequence[Figures], meshed: Seq
         "level": plan.level,
         "source": source,
         "shape": plan.frame.shape,
+        "frame": {name: getattr(plan.frame, name) for name in ("shape", "spacing", "corner", "upward")},
         "block": plan.block,
         "n_vertices": vertices,
         "seam_edges": seam_edges,
