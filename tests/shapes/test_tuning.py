@@ -66,6 +66,19 @@ def discs(radius):
     return rms(off)
 
 
+def ellipses():
+    """Root mean square of the distance between the outlines of turned ellipses and these, told by the value of the quadratic form."""
+    off = []
+    for k, shift in enumerate(SHIFTS):
+        turn, x, y = np.exp(1j * (0.3 + k)), 60 + shift[0], 60 + shift[1]
+        r, c = np.mgrid[:120, :120] + 0.5
+        inner = ((c - x) + 1j * (120 - r - y)) / turn
+        z = (as_complex(traced((np.hypot(inner.real / 50, inner.imag / 20) < 1).astype(int))[0].points) - (x + 1j * y)) / turn
+        form = np.hypot(z.real / 50, z.imag / 20)
+        off.append((form - 1) * form / np.hypot(z.real / 2500, z.imag / 400))
+    return rms(off)
+
+
 def halves(radius):
     """The same for discs that are cut in two, at least 3 px from the cut, and how far from it nodes lie."""
     off, nodes = [], []
@@ -225,27 +238,30 @@ def sized():
 
 
 GROUPS = {
-    "disc 6": lambda: (discs(6.4),), "disc 21": lambda: (discs(21.3),), "disc 60": lambda: (discs(60.2),),
-    "halves": lambda: halves(25.4), "walls": lambda: (walls(),), "framed": lambda: (framed(),),
+    "disc 6": lambda: (discs(6.4),), "disc 10": lambda: (discs(10.3),), "disc 21": lambda: (discs(21.3),),
+    "disc 60": lambda: (discs(60.2),),
+    "ellipses": lambda: (ellipses(),), "halves": lambda: halves(25.4), "walls": lambda: (walls(),), "framed": lambda: (framed(),),
     "polygons": polygons, "squares": lambda: (squares(),), "teeth": lambda: (teeth(),), "gray": gray,
     **{name: (lambda name=name: simplified(name)) for name in ("blob", "gear", "grains", "noise", "specks")},
     "gears": gears, "ring": ring, "slid": slid, "sized": sized,
 }  # fmt: skip
 
 REACHED = {
-    "disc 6": (0.0765,), "disc 21": (0.0367,), "disc 60": (0.0272,),
-    "halves": (0.0475, 0.0505), "walls": (0.073,), "framed": (0.0438,),
-    "polygons": (0.0, 0.23), "squares": (0.0,), "teeth": (18.0,), "gray": (0.0059, 0.0685, 0.239),
+    "disc 6": (0.0755,), "disc 10": (0.0515,), "disc 21": (0.0347,), "disc 60": (0.0255,), "ellipses": (0.111,),
+    "halves": (0.0463, 0.0505), "walls": (0.0655,), "framed": (0.0418,),
+    "polygons": (0.0, 0.23), "squares": (0.0,), "teeth": (18.0,), "gray": (0.0051, 0.068, 0.238),
     "blob": (85, 0.03), "gear": (118, 0.12), "grains": (172, 0.115), "noise": (700, 0.31, 3.3), "specks": (700, 0.25),
     "gears": (745,), "ring": (1.1,), "slid": (0.5, 2.3), "sized": (0.03, 0.031, 31.5),
 }  # fmt: skip
 
 MATTERS = [
     ("BOUND", 0.5, "disc 21", 0), ("NARROW", 0.5, "disc 6", 0), ("WIDTH", 0.5, "disc 21", 0), ("WIDE", 0.5, "disc 60", 0),
-    ("RING_SCALES", 2, "disc 21", 0), ("BENDS", 0.5, "disc 60", 0), ("MOST_BEND", 0.5, "disc 60", 0), ("BEND", 0.5, "gray", 0),
+    ("RING_SCALES", 2, "gray", 0), ("BENDS", 0.5, "disc 60", 0), ("MOST_BEND", 0.5, "disc 60", 0), ("BEND", 0.5, "disc 21", 0),
     ("ROUNDEST", 0.5, "disc 6", 0), ("LENGTHS", 0.5, "polygons", 0), ("OUT_OF_BLOCK", 0.5, "polygons", 0),
     ("SHORTEST_SIDE", 2, "polygons", 0), ("SLOPPY", 0, "polygons", 0), ("SKIPPED", 2, "polygons", 1), ("SAME_CORNER", 2, "squares", 0),
     ("SHORTEST_ALIGNED", 2, "squares", 0), ("HARD", 0.5, "gray", 0), ("SURE", 0.5, "gray", 1), ("WINDOW", 2, "gray", 1),
+    ("SMALLEST_WIDE", 2, "disc 10", 0), ("SLIGHT", 0, "walls", 0),
+    ("FEWEST", 8, "walls", 0),
     ("MISFIT", 0.5, "blob", 1), ("MOST_OFFSET", 2, "gear", 0), ("RING", 0.5, "ring", 0), ("ROOM_TO_EVEN", 0.5, "gear", 0),
     ("SHARP_TURN", 0.5, "grains", 0), ("GAP", 2, "specks", 0), ("LEANS", 0, "gears", 0), ("ENOUGH", 1.053, "gears", 0),
     ("SLIDE", 0.5, "slid", 1), ("STRAIGHT", 0.5, "slid", 1), ("EMPTY", 2, "sized", 0), ("OPPOSITE", 2, "sized", 0),

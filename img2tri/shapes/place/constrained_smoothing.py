@@ -29,12 +29,14 @@ from img2tri.shapes.place.along_the_arc import fade_out
 from img2tri.shapes.place.padded_chains import PaddedChains
 from img2tri.shapes.place.smoothing_splines import PADDING, CurvatureSpline, SmoothingSpline
 
-NARROW, WIDE = (1.5, 4.0), (9.0, 20.0, 48.0)  # px, scales of splines smooth in x and y, and of those smooth in their curvature
+NARROW, WIDE = (1.5, 4.0), (9.0, 22.0, 70.0)  # px, scales of splines smooth in x and y, and of those smooth in their curvature
+BASE = 7.0  # px, the scale of the spline that the wide ones are laid along
 MISFIT = 0.4  # of the slack: by how much a spline may miss the bounds of a crossing and still count as fitting
 WINDOW = 3.0  # scales: how far from bounds that are missed a spline fits
 FREE_ENDS = 5.0  # px, the least scale that moves the ends of chains along the frame: short chains there would lose their area
-RING_SCALES = 6.0  # the least number of points of a ring that is smoothed, in scales
+RING_SCALES = 3.0  # the least number of points of a ring that is smoothed, in scales
 SHORTEST_NARROW, SHORTEST_WIDE = 3, 11  # points: open chains with no more are not smoothed
+SMALLEST_NARROW, SMALLEST_WIDE = 9, 54  # points: the same for rings
 UNSMOOTHED = 4  # points that tell where a chain leads that is not smoothed
 AT_BOUND = 1e-9  # what lies so near to a bound lies there, up to rounding
 NO_STEP = 1e-12  # px, a step that changes nothing
@@ -105,8 +107,8 @@ def widest_fitting_spline(s: BoundedChains) -> tuple[Floats, ChainEnds]:
     shift, level, ends = np.zeros((len(NARROW + WIDE) + 1, len(s.points))), np.zeros(len(s.points), np.int64), _unsmoothed_ends(s)
     size, rings = np.diff(s.chains.starts), s.chains.rings
     able = [
-        s.movable & (size > np.where(rings, RING_SCALES * scales[0], least))
-        for scales, least in ((NARROW, SHORTEST_NARROW), (WIDE, SHORTEST_WIDE))
+        s.movable & (size > np.where(rings, smallest, shortest))
+        for smallest, shortest in ((SMALLEST_NARROW, SHORTEST_NARROW), (SMALLEST_WIDE, SHORTEST_WIDE))
     ]
     batch = np.cumsum(size) // BATCH
     for number in np.unique(batch).tolist():
@@ -120,7 +122,7 @@ def widest_fitting_spline(s: BoundedChains) -> tuple[Floats, ChainEnds]:
             laid.fit(k, scale, laid.narrow, shift[k], level, ends)
         if wide.any():
             laid = laid if same else _LaidOut(s, wide, WIDE[-1])
-            spline = CurvatureSpline(laid.narrow, NARROW[-1])
+            spline = CurvatureSpline(laid.narrow, BASE)
             for k, scale in enumerate(WIDE, len(NARROW) + 1):
                 laid.fit(k, scale, spline, shift[k], level, ends)
     return _blend(shift, level, s), ends

@@ -19,6 +19,7 @@ from img2tri.shapes.place.constrained_smoothing import BoundedChains, restore_sw
 from img2tri.shapes.place.known_crossings import OutlineLevel, known_crossings
 from img2tri.shapes.place.node_placement import bend_to_nodes, meeting_places, open_wedges
 from img2tri.shapes.place.outline_corners import find_corners
+from img2tri.shapes.place.straight_chains import straightened
 from img2tri.shapes.trace.crack_edges import CrackEdges
 from img2tri.shapes.trace.dual_edges import BOUND, DualEdges, cut_chains, lay_out, pixel_areas
 from img2tri.types import ColourMix, Frame, Outlines
@@ -66,7 +67,7 @@ def place_outlines(
         node = len(dual_edges.crossed) + np.searchsorted(dual_edges.node_corner, at)
         points[node], movable[node] = sharp, False
     bounded = _with_free_ends(_bounded(dual_edges, points, shift, slack), dual_edges)
-    shift, ends = widest_fitting_spline(bounded)
+    shift, ends = straightened(bounded, *widest_fitting_spline(bounded))
     # From here on the nodes on the frame stay where they slid to, and all others where their chains lead.
     nodes = meeting_places(replace(bounded, points=bounded.points + shift * bounded.axis), ends, movable, dual_edges.bounds)
     bounded = replace(bounded, points=np.where(dual_edges.slides, bounded.points, nodes), axis=dual_edges.vector)
