@@ -114,6 +114,26 @@ def unique_edges(triangles: Ints) -> tuple[Ints, Ints]:
     >>> edges.tolist(), sides.tolist()
     ([[0, 1], [0, 2], [0, 3], [1, 2], [2, 3]], [[0, 3, 1], [1, 4, 2]])
     """
+    order, lower, higher = sorted_sides(triangles)
+    new = np.ones(len(order), bool)
+    new[1:] = (lower[1:] != lower[:-1]) | (higher[1:] != higher[:-1])
+    first, sides = np.flatnonzero(new), np.empty(len(order), np.int64)
+    sides[order] = np.cumsum(new, dtype=lower.dtype) - 1
+    edges = np.empty((len(first), 2), np.int64)
+    edges[:, 0], edges[:, 1] = lower.take(first), higher.take(first)
+    return edges, sides.reshape(triangles.shape)
+
+
+def sorted_sides(triangles: Ints) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
+    """Return the order (3 m,) that sorts the sides of triangles by their ends, and the lower and the higher end of each in that order.
+
+    Sides of one edge follow each other, in the order they have in the triangles.
+
+    Examples
+    --------
+    >>> [part.tolist() for part in sorted_sides(np.array([[2, 1, 0]]))]
+    [[1, 2, 0], [0, 0, 1], [1, 2, 2]]
+    """
     # Half the memory to go through, where numbers are small enough.
     short = triangles.astype(np.int32 if max(triangles.max(initial=0), triangles.size) < 2**31 else np.int64)
     start, end = short.ravel(), short.take([1, 2, 0], axis=1).ravel()
@@ -122,15 +142,8 @@ def unique_edges(triangles: Ints) -> tuple[Ints, Ints]:
     order = counting_sort(higher)
     by_lower = lower.take(order)
     again = counting_sort(by_lower)
-    order, lower = order.take(again), by_lower.take(again)
-    higher = higher.take(order)
-    new = np.ones(len(order), bool)
-    new[1:] = (lower[1:] != lower[:-1]) | (higher[1:] != higher[:-1])
-    first, sides = np.flatnonzero(new), np.empty(len(order), np.int64)
-    sides[order] = np.cumsum(new, dtype=short.dtype) - 1
-    edges = np.empty((len(first), 2), np.int64)
-    edges[:, 0], edges[:, 1] = lower.take(first), higher.take(first)
-    return edges, sides.reshape(triangles.shape)
+    order = order.take(again)
+    return order, by_lower.take(again), higher.take(order)
 
 
 def counting_sort(keys: NDArray[Any]) -> NDArray[Any]:

@@ -16,6 +16,7 @@ from img2tri.errors import ParameterError
 
 EXACT = 2**53  # up to here a float64 holds all whole numbers
 _ROWS = 4096  # filled into one template at once
+SHARE_OF_TEXTS = 0.3  # of numbers: so few different ones are written once each
 _DIGITS = 4  # taken at once from a table of all groups of so many
 
 
@@ -89,19 +90,31 @@ def real_rows(array: NDArray[np.floating[Any]], between: str = " ", *, before: s
     >>> real_rows(np.array([[0.1, 1 / 3], [2, -0.0]]))
     '0.1 0.3333333333333333\n2.0 -0.0\n'
     """
-    columns = array.shape[1]
-    words = [repr(float(values[0])) if len(values) and _constant(values) else "%r" for values in array.T]
-    template = before.replace("%", "%%") + between.join(words) + after.replace("%", "%%") + "\n"
-    free = [i for i in range(columns) if words[i] == "%r"]
-    values = array[:, free].ravel().tolist()
-    each, parts = _ROWS * len(free), []
+    fixed = [repr(float(values[0])) if len(values) and _constant(values) else "" for values in array.T]
+    free = [i for i, word in enumerate(fixed) if not word]
+    values, place = _repeated(array[:, free].ravel())
+    template = before.replace("%", "%%") + between.join(word or place for word in fixed) + after.replace("%", "%%") + "\n"
     if not free:
         return template * len(array)
+    each, parts = _ROWS * len(free), []
     large = template * _ROWS
     for i in range(0, len(values), each):
         some = values[i : i + each]
         parts.append((large if len(some) == each else template * (len(some) // len(free))) % tuple(some))
     return "".join(parts)
+
+
+def _repeated(values: NDArray[np.floating[Any]]) -> tuple[list[Any], str]:
+    """Return numbers and the place for one in a template; or their texts and the place for these, where they repeat so that it is faster.
+
+    As most coordinates do on a lattice. Numbers are told apart by their bits: -0.0 is not 0.0.
+    """
+    bits = np.ascontiguousarray(values, np.float64).view(np.int64)
+    known = np.unique(bits)
+    if len(known) > SHARE_OF_TEXTS * len(bits):
+        return values.tolist(), "%r"
+    texts = np.array([*map(repr, known.view(np.float64).tolist()), None], object)[:-1]
+    return texts[np.searchsorted(known, bits)].tolist(), "%s"
 
 
 def rows(template: str, array: NDArray[Any]) -> list[str]:

@@ -236,8 +236,8 @@ def _far_from_rounding(made: Surface) -> bool:
         return False
     rounded = np.ascontiguousarray(plane.astype(np.float32) + np.float32(0)).view(np.uint64).ravel()
     rounded.sort()
-    a, b, c = (plane[made.faces[:, i]].T for i in range(3))
-    (ux, uy), (vx, vy) = b - a, c - a
+    corners = np.ascontiguousarray(made.faces.T)
+    (ux, vx), (uy, vy) = ((part[corners[1:]] - part[corners[0]]) for part in np.ascontiguousarray(plane.T))
     wx, wy = vx - ux, vy - uy
     longest = np.maximum(np.maximum(ux * ux + uy * uy, vx * vx + vy * vy), wx * wx + wy * wy)
     tall = np.abs(ux * vy - uy * vx) > 6 * moved * np.sqrt(longest)

@@ -81,7 +81,7 @@ def around(vertices: Floats, triangles: Ints, rectangle: tuple[float, float, flo
     n = len(vertices)
     points = np.concatenate([vertices, [[left, bottom], [right, bottom], [right, top], [left, top]]])
     start, end = triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
-    sides = np.flatnonzero(half_edge_twins(triangles, n) < 0)
+    sides = np.flatnonzero(half_edge_twins(triangles) < 0)
     rim = np.stack([np.arange(n, n + 4), n + (np.arange(4) + 1) % 4], axis=1)
     edges = np.concatenate([np.stack([start[sides], end[sides]], axis=1), rim])
     faces: Any = shapely.get_parts(shapely.polygonize(shapely.linestrings(points[edges])))

@@ -96,7 +96,7 @@ def extrude(vertices: Floats, triangles: Ints, height: ArrayLike, *, z: float = 
     for storey, level in enumerate(levels.tolist()):
         mine = np.flatnonzero(roof >= storey)
         standing = triangles[mine]
-        twins = half_edge_twins(standing, n)
+        twins = half_edge_twins(standing)
         corners, origin = _unpinched(standing, n, twins)
         if len(levels) > 1:
             used, inverse = np.unique(corners, return_inverse=True)

@@ -120,7 +120,7 @@ def named_sets(
     ([[2, 0]], 1011)
     """
     called = region_names(regions, names)
-    twins = half_edge_twins(triangles, len(vertices))
+    twins = half_edge_twins(triangles)
     free, following, ring, area = _boundary(vertices, triangles, twins)
     start, end = triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
     a, b = start[free], end[free]
@@ -244,7 +244,7 @@ def boundary_rings(vertices: Floats, triangles: Ints) -> tuple[Ints, Ints, Float
     >>> boundary_rings(np.array([[0, 0], [2, 0], [0, 2.0]]), np.array([[0, 1, 2]]))
     (array([0, 1, 2]), array([0, 0, 0]), array([2.]))
     """
-    sides, _, ring, area = _boundary(vertices, triangles, half_edge_twins(triangles, len(vertices)))
+    sides, _, ring, area = _boundary(vertices, triangles, half_edge_twins(triangles))
     return sides, ring, area
 
 
