@@ -13,6 +13,8 @@ import numpy as np
 
 from img2tri.arrays import Bools, Ints, Points, runs
 
+MOST_MARKS = 8  # cells to each place: in larger grids what is marked is sorted
+
 
 def cells(places: Points, width: float) -> tuple[Ints, int]:
     """Return the number of the cell each place (n,) is in, and by how much that of the cell above differs.
@@ -29,10 +31,22 @@ def cells(places: Points, width: float) -> tuple[Ints, int]:
 
 def in_cells_beside(cell: Ints, above: int, chosen: Bools) -> Bools:
     """Tell which of all places lie in the cell of a chosen one, or in one beside it."""
-    # No grid of marks: where places are few and far apart it would be larger than the image.
-    hit = np.unique(cell[chosen])
-    beside = np.concatenate([hit + up + right for up in (-above, 0, above) for right in (-1, 0, 1)])
-    return np.isin(cell, beside)
+    hit, count = cell[chosen], int(cell.max(initial=0)) + above + 2
+    if count > MOST_MARKS * len(cell):
+        # No grid of marks: where places are few and far apart it would be larger than the image.
+        hit = np.unique(hit)
+        return np.isin(cell, np.concatenate([hit + beside for beside in _nine(above)]))
+    own, marks = np.zeros(count, bool), np.zeros(count, bool)
+    own[hit] = True
+    hit = np.flatnonzero(own)
+    for beside in _nine(above):
+        marks[hit + beside] = True
+    return np.asarray(marks[cell])
+
+
+def _nine(above: int) -> list[int]:
+    """By how much the numbers of a cell and those beside it differ from its own."""
+    return [up + right for up in (-above, 0, above) for right in (-1, 0, 1)]
 
 
 def pairs_beside(own: Ints, cell: Ints, above: int) -> tuple[Ints, Ints]:

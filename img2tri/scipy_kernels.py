@@ -11,7 +11,7 @@ from collections.abc import Callable
 from functools import cache
 from importlib import import_module
 from importlib.machinery import PathFinder
-from importlib.util import module_from_spec
+from importlib.util import find_spec, module_from_spec
 from typing import Any
 
 MOVED = (ImportError, AttributeError)  # extension modules are SciPy's own, and may move
@@ -67,12 +67,14 @@ def csr_tocsc() -> Callable[..., None]:
 
 def _extension(package: str, name: str) -> Any:
     """Return an extension module of SciPy: the one that is imported already, or else one loaded from its file, apart from its package."""
-    import scipy  # its start makes shared libraries known on Windows
-
     known = sys.modules.get(f"scipy.{package}.{name}")
     if known is not None:
         return known
-    spec = PathFinder.find_spec(f"{__name__}.{name}", [f"{folder}/{package}" for folder in scipy.__path__])
+    if sys.platform == "win32":
+        import scipy  # noqa: F401 - its start makes shared libraries known
+    whole = find_spec("scipy")
+    folders = [f"{folder}/{package}" for folder in (whole and whole.submodule_search_locations) or ()]
+    spec = PathFinder.find_spec(f"{__name__}.{name}", folders)
     if spec is None or spec.loader is None:  # as in programs packed into one file
         return import_module(f"scipy.{package}.{name}")
     module = module_from_spec(spec)
