@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from img2tri.arrays import Floats, Ints
+from img2tri.arrays import ChainIndex, Floats, Ints
 from img2tri.errors import ParameterError
 from img2tri.raster.labels.segmentation import Segmentation
 from img2tri.recipes.conforming import conform
@@ -52,11 +52,12 @@ def conform_symmetric(
     )
     # Outlines of the other half are the mirror image of these up to rounding, which must not cost the tolerance.
     made = conform(half, half_edges, sizes, **(fill | {"tolerance": max(fill["tolerance"] - ROUNDING, fill["tolerance"] / 2)}))
-    mesh = made.vertices, made.triangles, made.regions
+    mesh, set_back = (made.vertices, made.triangles, made.regions), made.outlines
     for i, axis in enumerate(axes):
         if "xy"[i] in symmetric:
             mesh = mirrored(*mesh, i, axis)
-    return RecipeMesh(*mesh, made.counted)
+            set_back = set_back and mirrored_outlines(set_back, i, axis)
+    return RecipeMesh(*mesh, made.counted, set_back)
 
 
 def mirrored(vertices: Floats, triangles: Ints, regions: Ints, i: int, axis: float) -> tuple[Floats, Ints, Ints]:
@@ -77,6 +78,22 @@ def mirrored(vertices: Floats, triangles: Ints, regions: Ints, i: int, axis: flo
     number[~on] = len(vertices) + np.arange(len(other))
     turned = number[triangles][:, ::-1]
     return np.concatenate([vertices, other]), np.concatenate([triangles, turned]), np.concatenate([regions, regions])
+
+
+def mirrored_outlines(outlines: Outlines, i: int, axis: float) -> Outlines:
+    """Return outlines with their mirror image beyond the axis, and without what runs along it; points on it are there once."""
+    points, chains = outlines.points, outlines.chains
+    on = np.abs(points[:, i] - axis) < ON_AXIS
+    inner = np.bincount(chains.chain, ~on[chains.indices], len(chains.rings)) > 0
+    indices = chains.indices[inner[chains.chain]]
+    number = np.arange(len(points))
+    number[~on] = len(points) + np.arange(np.count_nonzero(~on))
+    other = points[~on]
+    other[:, i] = 2 * axis - other[:, i]
+    starts = np.concatenate([[0], np.cumsum(np.tile(np.diff(chains.starts)[inner], 2))])
+    both = ChainIndex(np.concatenate([indices, number[indices]]), starts, np.tile(chains.rings[inner], 2))
+    left, right = outlines.left[inner], outlines.right[inner]
+    return Outlines(np.concatenate([points, other]), both, np.concatenate([left, right]), np.concatenate([right, left]), outlines.labels)
 
 
 def _check_field(symmetric: str, field: SizeField, frame: Frame) -> None:
