@@ -98,3 +98,14 @@ def test_lengths_that_differ_from_side_to_side_are_refused():
     with pytest.raises(ParameterError, match="^edge_length: expected lengths that are the same on both sides"):
         mesh_image(image, symmetric="x", edge_length=lambda places: 3 + places[:, 0] / 20)
     assert mesh_image(image, symmetric="x", edge_length=lambda places: 3 + abs(places[:, 0] - 50) / 20).report.kept
+
+
+@pytest.mark.parametrize("symmetric", ["x", "y", "xy"])
+@pytest.mark.parametrize("spacing", [(1.0, 20.0), (8.0, 1.0)])
+def test_outlines_that_were_set_back_are_mirrored_too(spacing, symmetric):
+    """So that the certificate compares with them, on both sides, where pixels are not square."""
+    labels = np.random.default_rng(4).integers(0, 3, (4, 5))
+    labels = np.hstack([labels, labels[:, ::-1]]) if "x" in symmetric else labels
+    labels = np.vstack([labels, labels[-2::-1]]) if "y" in symmetric else labels
+    mesh = mesh_image(labels, labels=True, spacing=spacing, symmetric=symmetric)
+    assert mesh.report.kept, mesh.report.warnings
