@@ -10,7 +10,9 @@ import sys
 from pathlib import Path
 
 import pytest
+import test_constants
 from children import PATIENCE
+from tuning import constants
 
 import img2tri
 
@@ -195,6 +197,13 @@ def test_one_name_means_one_thing():
                 places.setdefault(name, []).append(str(path.relative_to(PACKAGE)))
     twice = {name: found for name, found in places.items() if len(found) > 1}
     assert not twice
+
+
+def test_every_number_with_a_name_is_held_by_a_test_or_has_a_reason():
+    placed = [*test_constants.TUNED, *test_constants.HELD, *test_constants.WHY]
+    assert set(constants()) - set(placed) == set(), "say why in tests/test_constants.py, or show in a test_tuning.py that it matters"
+    assert set(placed) - set(constants()) == set(), "there is no such constant"
+    assert len(placed) == len(set(placed)), "in one place each"
 
 
 @pytest.mark.parametrize("folder", MAPS, ids=lambda p: str(p.relative_to(PACKAGE.parent)))

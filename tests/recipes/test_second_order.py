@@ -9,7 +9,9 @@ import oracles
 import pytest
 import shapely
 import specimens
+from benchmarks.shapes import blob
 
+import img2tri.recipes.second_order as recipe
 from img2tri import mesh_image
 from img2tri.recipes.second_order import second_order
 
@@ -141,6 +143,27 @@ def test_a_side_that_would_fold_its_element_is_pulled_back():
     squeezed = replace(squeezed, triangles=mesh.triangles[upright], regions=mesh.regions[upright])
     made = curved(squeezed)
     assert (jacobians(made) > 0).all()
+
+
+def bends(image, edge_length):
+    """How far all sides are bent, in total."""
+    mesh = mesh_image(image, edge_length=edge_length)
+    made = second_order(mesh.vertices, mesh.triangles, mesh.regions, mesh.frame, mesh.origin)
+    corners, nodes = made.nodes[made.triangles[:, :3]], made.nodes[made.triangles[:, 3:]]
+    return np.abs(nodes - (corners + np.roll(corners, -1, axis=1)) / 2).sum()
+
+
+@pytest.mark.parametrize(
+    ("constant", "image", "edge_length"),
+    [
+        ("SEARCH", blob(128, seed=4, holes=2).astype(np.uint8), 12),
+        ("HALVINGS", np.random.default_rng(0).integers(0, 2, (24, 27)) > 0, 5),
+    ],
+)
+def test_without_it_fewer_sides_bend(constant, image, edge_length, monkeypatch):
+    with_it = bends(image, edge_length)
+    monkeypatch.setattr(recipe, constant, 0)
+    assert bends(image, edge_length) < 0.97 * with_it
 
 
 def test_without_outlines_all_sides_are_straight():

@@ -6,8 +6,6 @@ matters is shown too: halved, doubled or gone, it makes one of the measures wors
 
 from __future__ import annotations
 
-import importlib
-import pkgutil
 from functools import cache
 
 import numpy as np
@@ -15,8 +13,10 @@ import pytest
 import shapely
 import specimens
 from benchmarks.shapes import blob, gear
+from scipy.spatial import Voronoi, cKDTree
+from tuning import change
 
-import img2tri.shapes
+from img2tri import mesh_image
 from img2tri.arrays import as_complex, as_rows
 from img2tri.raster.labels.segmentation import Segmentation
 from img2tri.recipes.conforming import _spaced, trace_outlines
@@ -28,6 +28,8 @@ from img2tri.shapes.simplify.simplification import space_evenly
 from img2tri.shapes.simplify.tangential_relocation import relocate, slide_limits
 from img2tri.shapes.simplify.tolerance import deviations
 from img2tri.shapes.sizes.outline_sizes import by_curvature, by_thickness, limit_growth
+from img2tri.shapes.trace.dual_edges import pixel_areas
+from img2tri.shapes.trace.nonsquare_pixels import with_turning_points
 from img2tri.types import Frame
 
 RNG = np.random.default_rng(5)
@@ -44,8 +46,13 @@ LABELS = {
 }
 
 
-def traced(labels, gray=None, level=None):
-    return trace_outlines(Segmentation(labels, 0, gray=gray, level=level), Frame(labels.shape))
+RANDOM = np.random.default_rng(5)
+MAPS = [RANDOM.integers(1, RANDOM.integers(3, 6), (RANDOM.integers(5, 9), RANDOM.integers(5, 9))) for _ in range(120)]
+TINY = [MAPS[k] for k in (8, 18, 46, 12, 95, 29, 55, 74, 65, 96, 36, 84)]  # where constants show most
+
+
+def traced(labels, gray=None, level=None, spacing=(1.0, 1.0)):
+    return trace_outlines(Segmentation(labels, 0, gray=gray, level=level), Frame(labels.shape, spacing=spacing))
 
 
 def rms(off):
@@ -110,6 +117,22 @@ def walls():
     return rms(off)
 
 
+def cells():
+    """How far nodes of small straight grains are from where these meet."""
+    off = []
+    for seed in range(3):
+        seeds = np.random.default_rng(seed).random((150, 2)) * 80
+        y, x = np.mgrid[:80, :80] + 0.5
+        labels = np.argmin([np.hypot(80 - y - r, x - c) for r, c in seeds], axis=0) + 1
+        outlines, dual_edges = traced(labels)
+        met = Voronoi(seeds[:, ::-1]).vertices
+        met = met[((met > 3) & (met < 77)).all(axis=1)]
+        alone = cKDTree(met).query(met, k=2)[0][:, 1] > 3
+        far = cKDTree(outlines.points[dual_edges.is_junction]).query(met)[0]
+        off.append(far[alone & (far < 1.5)])
+    return rms(off)
+
+
 def framed():
     """How far half discs at the frame are from circles."""
     off = []
@@ -167,6 +190,18 @@ def gray():
     return tuple(result)
 
 
+def colours():
+    """How far from a circle a disc of two flat colours on a third is, drawn by coverage, but where these meet."""
+    y, x = (np.mgrid[:480, :480] + 0.5) / 8
+    disc = np.hypot(x - 30.2, y - 29.7) < 20.3
+    halves = np.where((x > 30.2 + 0.3 * (y - 30))[..., None], (30, 30, 200), (200, 30, 30))
+    drawn = np.where(disc[..., None], halves, 255).reshape(60, 8, 60, 8, 3).mean(axis=(1, 3))
+    points = mesh_image(np.rint(drawn).astype(np.uint8), colors=3, edge_length=20).origin.outlines.points
+    x, y = points[:, 0] - 30.2, 30.3 - points[:, 1]
+    off = np.hypot(x, y) - 20.3
+    return rms([off[(np.abs(off) < 2) & (np.abs(x - 0.3 * y) > 2.1)]])
+
+
 def largest(mask):
     from scipy.ndimage import binary_closing, label
 
@@ -183,9 +218,13 @@ def dense(name):
 
 
 def coarse(name, length=7.0):
-    outlines, dual_edges = dense(name)
+    return made_coarse(*dense(name), length, 0.5)
+
+
+def made_coarse(outlines, dual_edges, length, tolerance):
     pairs = find_periodic_pairs(outlines, dual_edges, None)
-    return with_areas_preserved(_spaced(outlines, dual_edges, pairs, Sizes(length), 0.5, False, True), pairs, tolerance=0.5)
+    spaced = _spaced(outlines, dual_edges, pairs, Sizes(length), tolerance, False, True)
+    return with_areas_preserved(spaced, pairs, tolerance=tolerance)
 
 
 def simplified(name):
@@ -195,6 +234,64 @@ def simplified(name):
     length = np.abs(s.places[last] - s.places[first])
     ratio = (length[1:] / length[:-1])[last[:-1] == first[1:]]
     return float(len(first)), float(np.abs(np.log(ratio)).mean()), float(1 / length.min()), float(area_errors(s).max())
+
+
+def enclosed(outlines):
+    """Area of each region number."""
+    z = as_complex(outlines.points)[outlines.chains.indices]
+    swept = np.append((z[:-1].conj() * z[1:]).imag / 2, 0)
+    swept[outlines.chains.last] = 0
+    of_chain = np.bincount(outlines.chains.chain, swept)
+    size = len(outlines.labels)
+    return np.bincount(outlines.left, of_chain, size) - np.bincount(outlines.right, of_chain, size)
+
+
+def area_error(s):
+    """The greatest of the regions of more than 16 px, in %."""
+    wanted, found = pixel_areas(s.dual_edges)[1:], enclosed(s.coarse())[1:]
+    return 100 * float((np.abs(found - wanted) / wanted)[wanted > 16].max(initial=0))
+
+
+def sharpest(outlines):
+    """The least angle between outlines that meet, in degrees."""
+    z = as_complex(outlines.points)[outlines.chains.indices]
+    chains, opened = outlines.chains, ~outlines.chains.rings
+    first, last = chains.first[opened], chains.last[opened]
+    node = chains.indices[np.concatenate([first, last])]
+    heading = np.angle(np.concatenate([z[first + 1] - z[first], z[last - 1] - z[last]]))
+    order = np.lexsort((heading, node))
+    node, heading = node[order], heading[order]
+    begins = np.flatnonzero(np.diff(node, prepend=-1))
+    after = np.append(heading[1:], 0)
+    ends = np.append(begins[1:], len(node)) - 1
+    after[ends] = heading[begins] + 2 * np.pi
+    return float(np.degrees((after - heading).min()))
+
+
+def tiny(spacing=(1.0, 1.0), count=12):
+    """Random maps of a few pixels: chords, 1 / the shortest, the worst area (%), and how much the sharpest meeting lacks of 60 degrees."""
+    rows = []
+    for labels in TINY[:count]:
+        outlines, dual_edges = traced(labels, spacing=spacing)
+        s = made_coarse(*with_turning_points(outlines, dual_edges), 3.0, 0.5)
+        first, last = s.chords
+        shortest = max(np.abs(s.places[last] - s.places[first]).min(), 1e-9)
+        rows.append((len(first), 1 / shortest, area_error(s), max(0.0, 60 - sharpest(outlines))))
+    found = np.array(rows)
+    return float(found[:, 0].sum()), float(found[:, 1].mean()), float(found[:, 2].max()), float(found[:, 3].mean())
+
+
+def long_chords():
+    """Discs in few chords: the number of these, and the worst area (%)."""
+    discs = (3.2, 0.2), (8.3, 0.2), (8.3, 0.5), (30.1, 0.5)
+    found = [made_coarse(*traced(specimens.disc(int(2 * radius) + 8, radius)), 40.0, tolerance) for radius, tolerance in discs]
+    return float(sum(len(s.chords[0]) for s in found)), max(map(area_error, found))
+
+
+def checkers():
+    """The worst area of the regions of a small checkerboard (%)."""
+    s = made_coarse(*traced(specimens.LABELS["checkerboard of two"]), 3.0, 0.5)
+    return (100 * float(np.abs(enclosed(s.coarse())[1:] / pixel_areas(s.dual_edges)[1:] - 1).max()),)
 
 
 def gears():
@@ -241,17 +338,22 @@ GROUPS = {
     "disc 6": lambda: (discs(6.4),), "disc 10": lambda: (discs(10.3),), "disc 21": lambda: (discs(21.3),),
     "disc 60": lambda: (discs(60.2),),
     "ellipses": lambda: (ellipses(),), "halves": lambda: halves(25.4), "walls": lambda: (walls(),), "framed": lambda: (framed(),),
-    "polygons": polygons, "squares": lambda: (squares(),), "teeth": lambda: (teeth(),), "gray": gray,
+    "polygons": polygons, "squares": lambda: (squares(),), "teeth": lambda: (teeth(),), "gray": gray, "colours": lambda: (colours(),),
     **{name: (lambda name=name: simplified(name)) for name in ("blob", "gear", "grains", "noise", "specks")},
-    "gears": gears, "ring": ring, "slid": slid, "sized": sized,
+    "gears": gears, "ring": ring, "slid": slid, "sized": sized, "cells": lambda: (cells(),), "long": long_chords,
+    "checkers": checkers,
+    "tiny": tiny, "oblong": lambda: tiny((1.5, 1.0), 8), "wide": lambda: tiny((3.0, 1.0), 8),
+    "nearly": lambda: tiny((1.15, 1.0), 5),
 }  # fmt: skip
 
 REACHED = {
     "disc 6": (0.0755,), "disc 10": (0.0515,), "disc 21": (0.0347,), "disc 60": (0.0255,), "ellipses": (0.111,),
     "halves": (0.0463, 0.0505), "walls": (0.0655,), "framed": (0.0418,),
-    "polygons": (0.0, 0.23), "squares": (0.0,), "teeth": (18.0,), "gray": (0.0051, 0.068, 0.238),
+    "polygons": (0.0, 0.23), "squares": (0.0,), "teeth": (18.0,), "gray": (0.0051, 0.068, 0.238), "colours": (0.0155,),
     "blob": (85, 0.03), "gear": (118, 0.12), "grains": (172, 0.115), "noise": (700, 0.31, 3.3), "specks": (700, 0.25),
-    "gears": (745,), "ring": (1.1,), "slid": (0.5, 2.3), "sized": (0.03, 0.031, 31.5),
+    "gears": (745,), "ring": (1.1,), "slid": (0.5, 2.3), "sized": (0.03, 0.031, 31.5), "cells": (0.42,), "long": (120, 0.03),
+    "tiny": (1480, 2.6, 0.06, 5.5), "oblong": (1260, 5.0, 0.1, 8.8), "wide": (1340, 2.8, 0.06, 22.5), "nearly": (650, 3.5, 0.06, 6.5),
+    "checkers": (5.6,),
 }  # fmt: skip
 
 MATTERS = [
@@ -266,9 +368,20 @@ MATTERS = [
     ("SHARP_TURN", 0.5, "grains", 0), ("GAP", 2, "specks", 0), ("LEANS", 0, "gears", 0), ("ENOUGH", 1.053, "gears", 0),
     ("SLIDE", 0.5, "slid", 1), ("STRAIGHT", 0.5, "slid", 1), ("EMPTY", 2, "sized", 0), ("OPPOSITE", 2, "sized", 0),
     ("EVERY", 2, "sized", 0), ("BESIDE", 0.5, "sized", 1), ("PASSES", 0.5, "sized", 2),
+    # Where regions meet, chords are few or pixels many: tiny maps, small grains, discs in few chords.
+    ("SHORTEST_CHORD", 0.5, "noise", 2), ("SNAPPED_SLACK", 0, "tiny", 2), ("FADE", 0, "specks", 1), ("FREE_ENDS", 0.5, "tiny", 3),
+    ("SHORTEST_WIDE", 0.5, "tiny", 3), ("NODE_WEIGHT", 2, "gear", 1), ("LACKING_AREA", 0.1, "wide", 0), ("GREAT", 2, "long", 1),
+    ("SAME_CROSSINGS", 0, "polygons", 0), ("SMALL_REGION", 2, "tiny", 2), ("SHRINKINGS", 0, "sized", 0), ("ON_LINE", 0, "squares", 0),
+    ("AMID", 8, "cells", 0), ("LEAST_WEDGE", 0.5, "tiny", 3), ("SHORTEST_PART", 2, "specks", 1), ("LONG", 0.9, "nearly", 0),
+    ("SHORT", 0.5, "wide", 0), ("STILL_OFF", 2, "long", 1), ("AREA_ERROR", 10, "gear", 3), ("RESPACINGS", 0.5, "specks", 1),
+    ("EXCHANGE_ROUNDS", 0, "tiny", 2), ("MOST_AREA_ROUNDS", 0.5, "oblong", 2), ("EXCHANGES", 0, "tiny", 2),
+    ("MOST_EXCHANGED", 0, "tiny", 2), ("LEAST_ROOM", 0, "tiny", 0), ("SMALLER", 2, "tiny", 2),
+    ("STRANGE", 2, "colours", 0), ("LASTING", 0.5, "gears", 0), ("FOR_ALL", 0, "wide", 0),
+    ("LEAST_STEP", 2, "disc 60", 0), ("ARC_BLUR", 2, "blob", 1),
+    ("SHORTEST_NARROW", 2, "tiny", 3),
+    ("MOST_SHIFT", 0.5, "checkers", 0), ("BLUNT", 0, "checkers", 0), ("INNER", 0, "oblong", 1), ("UNSURE", 0, "oblong", 2),
+    ("BASE", 0.5, "disc 60", 0),
 ]  # fmt: skip
-
-MODULES = [importlib.import_module(found.name) for found in pkgutil.walk_packages(img2tri.shapes.__path__, "img2tri.shapes.")]
 
 
 @cache
@@ -283,16 +396,10 @@ def test_what_was_reached_is_kept(group):
     assert all(value <= most for value, most in zip(found, REACHED[group], strict=False)), found
 
 
-def changed(value, factor):
-    return tuple(changed(one, factor) for one in value) if isinstance(value, tuple) else type(value)(value * factor)
-
-
 @pytest.mark.parametrize(("constant", "factor", "group", "measure"), MATTERS, ids=[name for name, *_ in MATTERS])
 def test_a_constant_matters(constant, factor, group, measure, monkeypatch):
     before = measured(group)[measure]
-    homes = [module for module in MODULES if constant in vars(module)]
-    for module in homes:
-        monkeypatch.setattr(module, constant, changed(getattr(module, constant), factor))
+    change(monkeypatch, constant, factor)
     dense.cache_clear()
     try:
         assert GROUPS[group]()[measure] > 1.035 * before

@@ -37,7 +37,6 @@ FREE_ENDS = 5.0  # px, the least scale that moves the ends of chains along the f
 RING_SCALES = 3.0  # the least number of points of a ring that is smoothed, in scales
 SHORTEST_NARROW, SHORTEST_WIDE = 3, 11  # points: open chains with no more are not smoothed
 SMALLEST_NARROW, SMALLEST_WIDE = 9, 54  # points: the same for rings
-UNSMOOTHED = 4  # points that tell where a chain leads that is not smoothed
 AT_BOUND = 1e-9  # what lies so near to a bound lies there, up to rounding
 NO_STEP = 1e-12  # px, a step that changes nothing
 BATCH = 1 << 15  # points of chains smoothed at a time: what is laid out for them fits the cache, and takes little memory
@@ -179,12 +178,10 @@ def _bend(scale: float) -> float:
 
 
 def _unsmoothed_ends(s: BoundedChains) -> ChainEnds:
-    """Tell where chains lead as they are: from the crossing beside each node on, as the next few crossings do."""
+    """Tell where chains lead as they are: from the crossing beside each node on, as the next point does."""
     chains, z = s.chains, s.points[s.chains.indices]
-    size = np.diff(chains.starts) - 1
-    inner = np.minimum(UNSMOOTHED, size)
     beside = np.stack([z[chains.first + 1], z[chains.last - 1]], axis=1)
-    direction = np.stack([z[chains.first + inner] - beside[:, 0], beside[:, 1] - z[chains.last - inner]], axis=1)
+    direction = np.stack([z[chains.first + 2] - beside[:, 0], beside[:, 1] - z[chains.last - 2]], axis=1)
     unit = np.where(direction == 0, 1, direction) / np.maximum(np.abs(direction), 1e-12)
     return ChainEnds(beside, np.asarray(unit, np.complex128), np.zeros(beside.shape))
 
