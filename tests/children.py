@@ -6,6 +6,7 @@ replaced, and the cases go on behind the one that did it.
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import importlib
 import os
@@ -17,6 +18,7 @@ import sys
 import tempfile
 import threading
 import time
+from multiprocessing.forkserver import _forkserver
 from pathlib import Path
 
 GIGABYTE = 2**30
@@ -36,6 +38,17 @@ class Outcome:
     text: str = ""
     seconds: float = 0.0
     peak: int = 0
+
+
+@contextlib.contextmanager
+def hooked_workers(folder, monkeypatch, code):
+    """Let all processes that are started in the meantime run `code` first; they find it in a folder of their own."""
+    (folder / "hook").mkdir()
+    (folder / "hook" / "sitecustomize.py").write_text(code)
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(folder / "hook"), *filter(None, sys.path)]))
+    _forkserver._stop()  # the next one hears of the hook
+    yield
+    _forkserver._stop()
 
 
 def run(function, cases, *, seconds=10.0, memory=4 * GIGABYTE, start_up=PATIENCE):

@@ -11,13 +11,12 @@ import subprocess
 import sys
 import time
 import warnings
-from multiprocessing.forkserver import _forkserver
 from pathlib import Path
 
 import numpy as np
 import pytest
 import specimens
-from children import PATIENCE
+from children import PATIENCE, hooked_workers
 from PIL import Image
 
 from img2tri import mesh_image
@@ -122,13 +121,8 @@ sys.addaudithook(hook)
 
 @pytest.fixture
 def hooked(tmp_path, monkeypatch):
-    folder = tmp_path / "hook"
-    folder.mkdir()
-    (folder / "sitecustomize.py").write_text(HOOK)
-    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(folder), *filter(None, sys.path)]))
-    _forkserver._stop()  # the next one hears of the hook
-    yield
-    _forkserver._stop()
+    with hooked_workers(tmp_path, monkeypatch, HOOK):
+        yield
 
 
 @pytest.fixture

@@ -41,12 +41,12 @@ class Sizes:
     """
 
     longest: float
+    gradation: float
     field: SizeField | None = None
     boundary: float | None = None
     elements_across: float | None = None
     segments_per_turn: float | None = None
     shortest: float = 0.0
-    gradation: float = 0.17
 
 
 def wanted_sizes(
@@ -55,11 +55,11 @@ def wanted_sizes(
     dual_edges: DualEdges,
     frame: Frame,
     *,
-    gradation: float = 0.17,
-    boundary_edge_length: float | str | None = None,
-    min_edge_length: float | str | None = None,
-    elements_across: float | None = None,
-    segments_per_turn: float | None = None,
+    gradation: float,
+    boundary_edge_length: float | str | None,
+    min_edge_length: float | str | None,
+    elements_across: float | None,
+    segments_per_turn: float | None,
 ) -> Sizes:
     """Turn what a user says of edge lengths into px.
 
@@ -72,12 +72,12 @@ def wanted_sizes(
         _check_number(longest, field, float(pixel_areas(dual_edges)[1:].sum()), frame)
     return Sizes(
         longest,
+        gradation,
         field,
         None if boundary_edge_length is None else frame.length("boundary_edge_length", boundary_edge_length) / frame.pixel,
         elements_across,
         segments_per_turn,
         0.0 if min_edge_length is None else frame.length("min_edge_length", min_edge_length) / frame.pixel,
-        gradation,
     )
 
 

@@ -5,14 +5,13 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
-import sys
 import time
-from multiprocessing.forkserver import _forkserver
 from pathlib import Path
 
 import numpy as np
 import pytest
 import specimens
+from children import hooked_workers
 from PIL import Image
 
 import img2tri
@@ -221,16 +220,11 @@ sys.addaudithook(hook)
 @pytest.fixture
 def deadly(tmp_path, monkeypatch):
     """Images among which are some that end the process that opens them."""
-    hook = tmp_path / "hook"
-    hook.mkdir()
-    (hook / "sitecustomize.py").write_text(HOOK)
-    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(hook), *filter(None, sys.path)]))
-    _forkserver._stop()  # the next one hears of the hook
     paths = [str(tmp_path / name) for name in ("a.png", "once.png", "b.png", "always.png", "c.png", "d.png")]
     for path in paths:
         Image.fromarray(DISCS[0]).save(path)
-    yield paths
-    _forkserver._stop()
+    with hooked_workers(tmp_path, monkeypatch, HOOK):
+        yield paths
 
 
 def all_but_one(found, paths):

@@ -9,6 +9,8 @@ import specimens
 from benchmarks.shapes import gear, leaf
 
 from img2tri import mesh_image
+from img2tri.options.all_options import checked, of
+from img2tri.options.mesh_options import FillOptions
 from img2tri.raster.labels.segmentation import Segmentation
 from img2tri.recipes import conforming
 from img2tri.recipes.conforming import conform, trace_outlines
@@ -18,7 +20,7 @@ from img2tri.types import Frame
 
 def check(labels, *, background=0, edge_length=8.0):
     outlines, dual_edges = trace_outlines(Segmentation(labels, background), Frame(labels.shape))
-    made = conform(outlines, dual_edges, Sizes(edge_length))
+    made = conform(outlines, dual_edges, Sizes(edge_length, 0.17), tolerance=0.5, corners="auto", **of(FillOptions, checked({})))
     regions = outlines.labels[made.regions]
     oracles.check_valid(made.vertices, made.triangles)
     assert oracles.angles(made.vertices, made.triangles).min() >= 30 - 1e-6

@@ -223,7 +223,7 @@ def coarse(name, length=7.0):
 
 def made_coarse(outlines, dual_edges, length, tolerance):
     pairs = find_periodic_pairs(outlines, dual_edges, None)
-    spaced = _spaced(outlines, dual_edges, pairs, Sizes(length), tolerance, False, True)
+    spaced = _spaced(outlines, dual_edges, pairs, Sizes(length, 0.17), tolerance, False, True)
     return with_areas_preserved(spaced, pairs, tolerance=tolerance)
 
 

@@ -61,8 +61,17 @@ def svg(
     >>> svg([[0, 0], [1, 0], [0, 1]], [[0, 1, 2]]).count("<path")
     2
     """
+    return _drawn(*_looked_at(vertices, triangles, regions), upward=upward, colours=colours)
+
+
+def _looked_at(vertices: ArrayLike, triangles: ArrayLike, regions: ArrayLike | None) -> tuple[Floats, Ints, NDArray[np.generic]]:
+    """Return vertices, triangles and labels that are a mesh, or raise what is wrong with them."""
     v, t = plane_mesh(vertices, triangles)
-    labels = np.ones(len(t), np.int64) if regions is None else per_triangle("regions", regions, len(t))
+    return v, t, np.ones(len(t), np.int64) if regions is None else per_triangle("regions", regions, len(t))
+
+
+def _drawn(v: Floats, t: Ints, labels: NDArray[np.generic], *, upward: bool, colours: Colours | None) -> str:
+    """Draw a mesh that was looked at, see `svg`."""
     places, (width, height) = _places(v, upward=upward)
     edges, sides = unique_edges(t)
     border = bordering(sides, labels)
@@ -95,9 +104,8 @@ def html(
     >>> html([[0, 0], [1, 0], [0, 1]], [[0, 1, 2]]).rpartition(">1")[2]
     ' triangle · 3 vertices · 1 region · smallest angle 45.0°</div></div>'
     """
-    v, t = plane_mesh(vertices, triangles)
-    labels = np.ones(len(t), np.int64) if regions is None else per_triangle("regions", regions, len(t))
-    drawing, numbers = svg(v, t, labels, upward=upward, colours=colours), _numbers(v, t, labels)
+    v, t, labels = _looked_at(vertices, triangles, regions)
+    drawing, numbers = _drawn(v, t, labels, upward=upward, colours=colours), _numbers(v, t, labels)
     style = "font:12px/1.6 system-ui,sans-serif;opacity:.75;font-variant-numeric:tabular-nums"
     return f'<div class="img2tri">{drawing}<div style="{style}">{numbers}</div></div>'
 
