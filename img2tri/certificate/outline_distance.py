@@ -146,8 +146,9 @@ def _near(z: Points, triangles: Ints, places: Points) -> Ints:
     """Triangles that may hold one of some places: those large or near one, by squares of a grid as wide as most triangles."""
     a, b, c = (z[corner] for corner in triangles.T)
     size = np.maximum(np.abs(b - a), np.abs(c - a))  # no place in the triangle is farther from its first corner
-    low = complex(min(z.real.min(), places.real.min()), min(z.imag.min(), places.imag.min()))
-    extent = max(np.ptp(z.real), np.ptp(z.imag), np.ptp(places.real), np.ptp(places.imag))
+    both = np.concatenate([z, places])  # a mesh may lie to one side of the places
+    low = complex(both.real.min(), both.imag.min())
+    extent = float(max(np.ptp(both.real), np.ptp(both.imag)))
     width = max(2 * float(size.mean()), extent / MOST_SQUARES)
     columns = int(extent / width) + 5
 

@@ -482,3 +482,9 @@ def test_what_a_prompt_shows_is_a_short_table(shapes):
     lines = repr(bad).splitlines()
     assert lines[0].endswith("99 not kept of what was promised")
     assert lines[-2:] == ["not kept        warning 4", "noted           a note"]
+
+
+def test_a_mesh_that_lies_beside_its_image_is_told_from_any_side():
+    mesh = mesh_image(specimens.disc(30, 12), edge_length=4)
+    for way in ((40, 0), (-40, 0), (0, 40), (0, -40), (25, -25)):
+        assert any("pixel" in warning for warning in dataclasses.replace(mesh, vertices=mesh.vertices + way).report.warnings)

@@ -8,6 +8,10 @@ import pytest
 import specimens
 
 from img2tri import mesh_image
+from img2tri.arrays import ChainIndex
+from img2tri.recipes.poisson_interior import scattered
+from img2tri.triangles.generate.constrained_delaunay import PslgError
+from img2tri.types import Outlines
 
 
 @pytest.mark.parametrize("name", ["disc", "ring", "spiral", "comb", "polycrystal", "island in island"])
@@ -32,3 +36,13 @@ def test_lengths_follow_the_field():
     wanted = 2 + 0.08 * middle[:, 0]
     assert 0.7 < np.median(size / wanted) < 1.2
     assert np.median(size[middle[:, 0] > 90]) > 2 * np.median(size[middle[:, 0] < 30])
+
+
+def test_an_outline_that_meets_itself_is_told_as_any_mesh_tells_it():
+    """So that the recipe mends the outlines, and tries again."""
+    points = np.array([[0.0, 0], [6, 0], [6, 4], [2, -1]])
+    chains = Outlines(
+        bow_tie, ChainIndex(np.array([0, 1, 2, 3, 0]), np.array([0, 5]), np.array([True])), *np.array([[1], [0]]), np.array([0, 1])
+    )
+    with pytest.raises(PslgError, match="Self-intersection"):
+        scattered(chains, 1.0, None, min_angle=30.0, seed=0)
