@@ -41,8 +41,6 @@ def test_lengths_follow_the_field():
 def test_an_outline_that_meets_itself_is_told_as_any_mesh_tells_it():
     """So that the recipe mends the outlines, and tries again."""
     points = np.array([[0.0, 0], [6, 0], [6, 4], [2, -1]])
-    chains = Outlines(
-        bow_tie, ChainIndex(np.array([0, 1, 2, 3, 0]), np.array([0, 5]), np.array([True])), *np.array([[1], [0]]), np.array([0, 1])
-    )
+    ring = ChainIndex(np.array([0, 1, 2, 3, 0]), np.array([0, 5]), np.array([True]))
     with pytest.raises(PslgError, match="Self-intersection"):
-        scattered(chains, 1.0, None, min_angle=30.0, seed=0)
+        scattered(Outlines(points, ring, np.array([1]), np.array([0]), np.array([0, 1])), 1.0, None, min_angle=30.0, seed=0)
