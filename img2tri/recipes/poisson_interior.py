@@ -13,6 +13,7 @@ from collections.abc import Callable
 import numpy as np
 
 from img2tri.arrays import Bools, Floats, Ints, independent
+from img2tri.errors import ParameterError
 from img2tri.paper.poisson_disk import DISTANCE_PER_EDGE, poisson_disk
 from img2tri.shapes.polygons import component_polygons
 from img2tri.triangles.generate.constrained_delaunay import PslgError, ruppert
@@ -42,18 +43,18 @@ def scattered(
     vertices, triangles, regions, irregular
         As from `img2tri.triangles.generate.filling.finish`; no triangle is regular.
     """
-    import shapely
     from scipy.spatial import cKDTree
 
     segments, left, right = chains.segments
-    parts = component_polygons(chains)[1]
-    if not shapely.is_valid(parts).all():
-        raise PslgError(f"outlines: expected none that meets itself, found {shapely.is_valid_reason(parts[~shapely.is_valid(parts)][0])}")
     least = longest if field is None else float(min(longest, field(chains.points).min(), _sampled(field, chains.points).min()))
     near = DISTANCE_PER_EDGE * least
-    inside = [
-        poisson_disk(part, chains.points, min_distance=near, min_distance_to_boundary=near, seed=seed + i) for i, part in enumerate(parts)
-    ]
+    try:
+        inside = [
+            poisson_disk(part, chains.points, min_distance=near, min_distance_to_boundary=near, seed=seed + i)
+            for i, part in enumerate(component_polygons(chains)[1])
+        ]
+    except ParameterError as error:  # an outline that meets itself
+        raise PslgError(str(error)) from error
     points = np.concatenate(inside)
     if field is not None and len(points):
         distance = DISTANCE_PER_EDGE * np.minimum(field(points), longest)
