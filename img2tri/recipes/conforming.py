@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -45,6 +45,7 @@ LEAST_PIECE = 1e-3  # px; outlines are never cut so fine, so that this is as goo
 WAY_BACK = 0.7  # px: no point is farther from the middle of its link, or of its block
 CONFETTI = 3000  # outlines: so many are seldom wanted
 ENDLESS = 0.02  # px: where segments of opposite sides get so short, each side would divide the other again and again
+SLIDE_AGAIN = 0.3  # of the shorter chord beside a vertex: how far it may slide for the sake of the worst angles
 ATTEMPTS = 12  # rounds of refining the outlines; two are the most that ordinary images take
 SPLITTINGS, SPLITTINGS_NOT_SQUARE = 6, 3  # of these: rounds in which they are split and snapped within the tolerance, and nothing else
 
@@ -168,7 +169,7 @@ def _filled(coarse: Simplification, pairs: PeriodicPairs, sizes: Sizes, demands:
     try:
         for _ in range(FILLINGS):
             if demands.interior == "lattice":
-                made = _with_lattice(coarse, chains, sizes, demands)
+                made = _with_lattice(coarse, chains, pairs, sizes, demands)
             else:
                 from img2tri.recipes.poisson_interior import scattered
 
@@ -192,7 +193,9 @@ def _shortest(chains: Outlines) -> float:
     return float(np.abs(other - one).min())
 
 
-def _with_lattice(coarse: Simplification, chains: Outlines, sizes: Sizes, demands: _Demands) -> tuple[Floats, Ints, Ints, int]:
+def _with_lattice(
+    coarse: Simplification, chains: Outlines, pairs: PeriodicPairs, sizes: Sizes, demands: _Demands
+) -> tuple[Floats, Ints, Ints, int]:
     """Begin a mesh, ask the outlines where their points may be that it wants elsewhere, and finish it, see `filling.finish`."""
     from img2tri.triangles.generate.filling import begin, finish
 
@@ -204,8 +207,16 @@ def _with_lattice(coarse: Simplification, chains: Outlines, sizes: Sizes, demand
     )  # fmt: skip
     # Opposite sides divided alike add points after those of the outlines; only the latter have their places there.
     own, added = np.split(begun.wanted, [len(limits)])
-    places = relocate(coarse, own, tolerance=demands.tolerance, keep_area=demands.keep_area)
-    return finish(begun, np.concatenate([places, added]), min_angle=demands.min_angle)
+    how: dict[str, Any] = {"tolerance": demands.tolerance, "keep_area": demands.keep_area}
+    placed = relocate(coarse, own, **how)
+    places = np.concatenate([placed.coarse().points, added])
+    if len(pairs.one):
+        return finish(begun, places, min_angle=demands.min_angle)  # opposite sides would be divided unlike by what follows
+    return finish(
+        begun, places, min_angle=demands.min_angle,
+        limits=slide_limits(placed, shortest=sizes.shortest, share=SLIDE_AGAIN, snapped=True),
+        settle=lambda wanted: relocate(placed, wanted, **how).coarse().points,
+    )  # fmt: skip
 
 
 def _spaced(

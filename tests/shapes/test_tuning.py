@@ -313,7 +313,7 @@ def slid():
         limits = slide_limits(s, shortest=0.0)
         points = as_complex(s.coarse().points)
         asked = points + 0.8 * limits * np.exp(1j * np.arange(len(points)))
-        went = as_complex(relocate(s, as_rows(asked), tolerance=0.5, keep_area=True))
+        went = as_complex(relocate(s, as_rows(asked), tolerance=0.5, keep_area=True).coarse().points)
         lines = shapely.linestrings(went[s.coarse().segments[0]].view(np.float64).reshape(-1, 2, 2))
         off.append(shapely.distance(shapely.points(s.outlines.points), shapely.union_all(lines)).max())
         limited.append(1 / limits.mean())

@@ -61,9 +61,12 @@ def _exchange(s: Simplification, free: NormalOffsets, width: Floats, tolerance: 
     back, forth = (
         ((free.shifted(s.offset, np.full(len(chain), way), tolerance) - s.offset)[free.at] * right_way).real for way in (-1.0, 1.0)
     )
-    step = np.zeros(len(chain))
+    step, known = np.zeros(len(chain)), np.zeros(0, bool)
     for _ in range(EXCHANGE_ROUNDS):
         able = np.where(step > 0, forth, np.where(step < 0, -back, forth - back)) > LEAST_ROOM
+        if np.array_equal(able, known):
+            break
+        known = able
         pressure = region_pressures(left, right, width * able / 2, lacking)
         step = pressure[left] - pressure[right]
     return np.asarray(np.clip(step, back, forth))

@@ -25,35 +25,41 @@ STRAIGHT = 35.0  # degrees: vertices at which the outline turns by more stay
 RETURNS = 4  # how often vertices go back one by one; then all do
 
 
-def slide_limits(s: Simplification, *, shortest: float = 0.0) -> Floats:
-    """Return how far each point of the coarse outline (n,) may slide, in px; chords do not get shorter than `shortest` by that."""
-    free = NormalOffsets(s)
+def slide_limits(s: Simplification, *, shortest: float = 0.0, share: float | None = None, snapped: bool = False) -> Floats:
+    """Return how far each point of the coarse outline (n,) may slide, in px; chords do not get shorter than `shortest` by that.
+
+    `share` is that of the shorter chord beside a point, usually `SLIDE`; with `snapped` points slide too that went back to their middles.
+    """
+    free = NormalOffsets(s, snapped=snapped)
     here = s.places[free.at]
     before, after = here - s.places[free.behind], s.places[free.ahead] - here
     length = np.minimum(np.abs(before), np.abs(after))
     straight = (after * before.conj()).real > np.cos(np.radians(STRAIGHT)) * np.abs(before) * np.abs(after)
+    room = np.minimum((SLIDE if share is None else share) * length, (length - max(shortest, SHORTEST_CHORD)) / 2)
     result = np.zeros(len(s.offset))
-    result[free.at] = straight * np.maximum(0, np.minimum(SLIDE * length, (length - max(shortest, SHORTEST_CHORD)) / 2))
+    result[free.at] = straight * np.maximum(0, room)
     result[s.chains.first] = 0  # what a ring begins and ends with stays
     return np.asarray(result[s.entries])
 
 
-def relocate(s: Simplification, points: Floats, *, tolerance: float, keep_area: bool = True) -> Floats:
-    """Return where the points (n, 2) of the coarse outline may be, which the mesh wants at these places; areas are kept if asked for."""
+def relocate(s: Simplification, points: Floats, *, tolerance: float, keep_area: bool = True) -> Simplification:
+    """Put the points (n, 2) of the coarse outline where the mesh wants them, as far as may be; areas are kept if asked for."""
     entries, places = s.entries, as_complex(points)
     goes = np.abs(places - s.places[entries]) > SAME_PLACE
     old, places = entries[goes], places[goes]
     new = _nearest(s, old, places)
-    goes = _distance_to_outline(s, new, places) <= tolerance
+    # What went back to the middle of its crack edge is not looked at again, see `tolerance`: it stays near its dense point.
+    off = np.where(s.snapped_entries[new], np.abs(places - s.dense[new]), _distance_to_outline(s, new, places))
+    goes = off <= tolerance
     for _ in range(RETURNS):
         old, new, places = old[goes], new[goes], places[goes]
         tried = _relocated(s, old, new, places)
         if keep_area:
             tried = preserve_areas(tried, tolerance=tolerance, whole=True)
-        found = enforce_tolerance(tried, tolerance=tolerance)
+        found = enforce_tolerance(tried, tolerance=tolerance, passed=s)
         failed = (found.kept != tried.kept) | (found.snapped_entries != tried.snapped_entries)
         if not failed.any():
-            return found.coarse().points
+            return found
         # A chord in which something had to be done takes both its ends back.
         first, last = tried.chords
         count = np.concatenate([[0], np.cumsum(failed)])
@@ -61,7 +67,7 @@ def relocate(s: Simplification, points: Floats, *, tolerance: float, keep_area: 
         ends = np.zeros(len(failed), bool)
         ends[first[back]] = ends[last[back]] = True
         goes = ~ends[new]
-    return s.coarse().points
+    return s
 
 
 def _nearest(s: Simplification, old: Ints, places: Points) -> Ints:

@@ -11,6 +11,7 @@ its edges. The way:
               strip     constrained Delaunay triangulation of what lies between                   strip.py, constrained_delaunay.py
               smooth    move vertices; those on outlines may slide along these                    quality_smoothing.py
     finish    repair    too many or too few triangles at a vertex; smooth again                   valence_repair.py
+              slide     once more, where angles are poor                                          quality_smoothing.py
               refine    where an angle is still too small: Ruppert's refinement, in a patch       ruppert_refinement.py
 
 Between the halves the caller, who knows the outlines, says where their points may be; `fill` does both and lets them stay.
@@ -31,7 +32,7 @@ from img2tri.triangles.generate.hexagonal_lattice import Lattice
 from img2tri.triangles.generate.interior_sizes import SizeFunction
 from img2tri.triangles.generate.pslg import Pslg
 from img2tri.triangles.generate.ruppert_refinement import refine_with_reserve
-from img2tri.triangles.generate.strip import RegionMesh, Strip, finish_strip, lay_strip, relax_strip, with_core
+from img2tri.triangles.generate.strip import RegionMesh, Settle, Strip, finish_strip, lay_strip, relax_strip, slide_again, with_core
 
 LengthField = Callable[[Floats], Floats]
 MARGINS = (2, 8)  # rings of nodes between the strip's other points and the core, tried in turn; then there is no core
@@ -186,7 +187,9 @@ def begin(
     return Filling(pslg, sizes, at_points, at_middles, lattice, strip, mesh, names, len(points))
 
 
-def finish(begun: Filling, points: Floats | None = None, *, min_angle: float = 30.0) -> tuple[Floats, Ints, Ints, int]:
+def finish(
+    begun: Filling, points: Floats | None = None, *, min_angle: float = 30.0, limits: Floats | None = None, settle: Settle | None = None
+) -> tuple[Floats, Ints, Ints, int]:
     """Finish a mesh, with the points given for it put to some places (n, 2) near where it wants them; None: exactly there.
 
     Parameters
@@ -197,6 +200,9 @@ def finish(begun: Filling, points: Floats | None = None, *, min_angle: float = 3
         At places that differ little from those of before; the segments between them must not cross.
     min_angle : float
         Degrees. Where the mesh misses it, points are added. It is reached unless segments meet in sharp corners.
+    limits, settle : optional
+        How far each point (n,) may slide from there for the sake of the worst angles, and what tells where points wanted at places (n, 2)
+        may be; None: they stay there.
 
     Returns
     -------
@@ -221,6 +227,8 @@ def finish(begun: Filling, points: Floats | None = None, *, min_angle: float = 3
         # Refinement may have to split an edge of the core, which cannot be: then again with less of a core, or none.
         for margin in (*MARGINS[1:], begun.lattice.rows, None):
             mesh = finish_strip(strip, relaxed, first)
+            if limits is not None and settle is not None:
+                mesh = slide_again(strip, mesh, limits, settle)
             refined = refine_with_reserve(mesh.vertices, mesh.triangles, mesh.codes, strip.constraints, strip.n_outline, min_angle)
             if refined is not None or margin is None:
                 break

@@ -91,8 +91,11 @@ class Pslg:
         at_new, at_middles[changed] = np.split(sizes.at(np.concatenate([points, divided.middles[changed]])), [len(points)])
         return divided, np.concatenate([at_points, at_new]), at_middles
 
-    def slide_lines(self, limits: Floats) -> SlideLines:
-        """Let the first points slide parallel to the line between their neighbours, within limits; but not where segments were divided."""
+    def slide_lines(self, limits: Floats, *, within: float = 0.0) -> SlideLines:
+        """Let the first points slide parallel to the line between their neighbours, within limits; but not where segments were divided.
+
+        With `within` they do so there too, and the points in between by this share of the shorter part beside them: see `on_segments`.
+        """
         start, stop = self.segments.T
         before, after = np.zeros((2, len(self.points)), np.complex128)
         before[stop], after[start] = self.points[start], self.points[stop]
@@ -100,9 +103,28 @@ class Pslg:
         divided = own & (np.bincount(self.origin[own])[self.origin] > 1)
         stays = np.zeros(len(self.points), bool)
         stays[self.segments[divided]] = True
-        at = np.flatnonzero((limits > 0) & ~stays[: len(limits)])
+        n, shorter = len(limits), np.minimum(np.abs(self.points - before), np.abs(after - self.points))
+        room = within * shorter * stays
+        room[:n] = np.where(stays[:n] & (within == 0), 0.0, limits)
+        at = np.flatnonzero(room > 0)
         along = after[at] - before[at]
-        return SlideLines(at, along / np.abs(along), self.points[at], limits[at])
+        return SlideLines(at, along / np.abs(along), self.points[at], room[at])
+
+    def on_segments(self, n: int, points: Points) -> Points:
+        """Put the points after the first n that divide a segment back on the line between its ends, where they are nearest to it.
+
+        `points` are places for the points, those that the segments end with among the first n.
+        """
+        own = np.flatnonzero(self.origin >= 0)
+        start, stop = self.segments[own].T
+        head, tail = own[start < n], own[stop < n]
+        ends = np.zeros((2, int(self.origin.max(initial=-1)) + 1), np.int64)
+        ends[0, self.origin[head]], ends[1, self.origin[tail]] = self.segments[head, 0], self.segments[tail, 1]
+        between = own[start >= n]
+        at, (a, b) = self.segments[between, 0], points[ends[:, self.origin[between]]]
+        points = points.copy()
+        points[at] = a + np.clip(((points[at] - a) / (b - a)).real, 0, 1) * (b - a)
+        return points
 
     def joined(self, points: Points, segments: Ints, right: Ints) -> Pslg:
         """Add points, and segments between these, with nothing meshed on their left."""

@@ -26,7 +26,7 @@ where this reaches 41 to 44.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -49,6 +49,8 @@ TARGET = 44.0  # degrees: angles above this are not worth optimising
 NEAR_WORST = 4.0  # degrees: angles within this of the worst are optimised with it; 2 to 8 serve
 WORST_PASSES = 2  # one after the other, as the worst place may then be another
 WORST_RINGS = 3  # rings of triangles around the worst that may change
+POOR = 36.0  # degrees: for angles below this vertices on outlines slide once more
+POOR_RINGS = 2  # rings of triangles around these that may change
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,6 +73,11 @@ class SlideLines:
     along: Points
     start: Points
     limits: Floats
+
+    def among(self, chosen: Bools) -> SlideLines:
+        """Return those of chosen vertices (n,) alone."""
+        which = chosen[self.at]
+        return SlideLines(self.at[which], self.along[which], self.start[which], self.limits[which])
 
 
 def defects_and_qualities(vertices: Points, triangles: Ints) -> tuple[Points, Floats]:
@@ -114,6 +121,28 @@ def smooth_and_raise(vertices: Points, triangles: Ints, free: Bools, tangents: F
     return smoother.smoothed(*_raised(*smoother.smoothed(vertices, tangents), triangles, free))[0]
 
 
+def raise_sliding(
+    vertices: Points, triangles: Ints, free: Bools, lines: SlideLines, settle: Callable[[Points], Points], target: float = POOR
+) -> Points:
+    """Raise the worst angles by smoothing with large powers in which vertices on outlines slide too, around all angles below `target`.
+
+    What the vertices then are, those on outlines where they may be, is told by `settle`. If the worst angle fell, or no fewer triangles
+    have an angle below the target, all stay.
+    """
+    tangents = min_angle_tangents(vertices, triangles)
+    least = math.tan(math.radians(target))
+    poor = tangents < least
+    if not poor.any():
+        return vertices
+    patch, inner = patch_around(poor, triangles, len(vertices), POOR_RINGS)
+    smoother = _Smoother(triangles[patch], free & inner)
+    moved = settle(smoother.smoothed(vertices, tangents[patch], WORST_FIRST, lines.among(inner))[0])
+    moved, found = _raised(moved, min_angle_tangents(moved, triangles), triangles, free, target)
+    moved, found[patch] = smoother.smoothed(moved, found[patch], safe=target)
+    better = found.min() >= tangents.min() - 1e-12 and np.count_nonzero(found < least) < np.count_nonzero(poor)
+    return moved if better else vertices
+
+
 class _Smoother:
     """What smoothing has to know of triangles and of the vertices that may move."""
 
@@ -126,9 +155,17 @@ class _Smoother:
         self._where = np.flatnonzero(free & used)
 
     def smoothed(
-        self, vertices: Points, tangents: Floats | None = None, schedule: Schedule = SMOOTH, lines: SlideLines | None = None
+        self,
+        vertices: Points,
+        tangents: Floats | None = None,
+        schedule: Schedule = SMOOTH,
+        lines: SlideLines | None = None,
+        safe: float = SAFE,
     ) -> tuple[Points, Floats]:
-        """Return the vertices moved by damped steps, and their smallest tangents (m,); those of before may be known."""
+        """Return the vertices moved by damped steps, and their smallest tangents (m,); those of before may be known.
+
+        No angle falls below the worst of before, nor below `safe` degrees.
+        """
         m, where = len(self._triangles), self._where
         moved, weights, weighted = vertices.copy(), np.empty(m), np.empty(m, np.complex128)
         for doublings, damping, steps in schedule:
@@ -146,7 +183,8 @@ class _Smoother:
                     step = damping * moves[lines.at] / total[lines.at]
                     way = ((moved[lines.at] + step - lines.start) * lines.along.conj()).real
                     moved[lines.at] = lines.start + np.clip(way, -lines.limits, lines.limits) * lines.along
-        return _shortened(vertices, moved, self._triangles, min_angle_tangents(vertices, self._triangles) if tangents is None else tangents)
+        known = min_angle_tangents(vertices, self._triangles) if tangents is None else tangents
+        return _shortened(vertices, moved, self._triangles, known, safe)
 
 
 def _raised(vertices: Points, tangents: Floats, triangles: Ints, free: Bools, target: float = TARGET) -> tuple[Points, Floats]:
@@ -182,12 +220,12 @@ def touching(triangles: Ints, marked: Bools) -> Bools:
     return either
 
 
-def _shortened(before: Points, after: Points, triangles: Ints, tangents: Floats) -> tuple[Points, Floats]:
-    """Shorten the moves of vertices of triangles that became bad: whose angle fell below 30 degrees or below the worst before.
+def _shortened(before: Points, after: Points, triangles: Ints, tangents: Floats, safe: float) -> tuple[Points, Floats]:
+    """Shorten the moves of vertices of triangles that became bad: whose angle fell below `safe` degrees or below the worst before.
 
     The smallest tangents (m,) are those before; those after are returned with the vertices.
     """
-    least = np.minimum(tangents, max(math.tan(math.radians(SAFE)), tangents.min(initial=np.inf))) - 1e-12
+    least = np.minimum(tangents, max(math.tan(math.radians(safe)), tangents.min(initial=np.inf))) - 1e-12
     moved, part, found = after.copy(), np.ones(len(before)), min_angle_tangents(after, triangles)
     worse = np.flatnonzero(found < least)
     # Each round shortens a move, and each move is shortened four times at most.

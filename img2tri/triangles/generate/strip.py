@@ -6,23 +6,29 @@ the outlines, not the area, and a large mesh costs a fraction of the time that i
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from img2tri.arrays import Bools, Floats, Ints, Points, as_rows
+from img2tri.arrays import Bools, Floats, Ints, Points, as_complex, as_rows
 from img2tri.triangles.generate.constrained_delaunay import triangulate
 from img2tri.triangles.generate.first_layer import apexes, uncrowded
 from img2tri.triangles.generate.graded_lattice import finer, reach
 from img2tri.triangles.generate.hexagonal_lattice import Codes, Core, Lattice
 from img2tri.triangles.generate.interior_sizes import SizeFunction, nearest_of
 from img2tri.triangles.generate.pslg import Pslg
-from img2tri.triangles.generate.quality_smoothing import SAFE, smooth, smooth_and_raise
-from img2tri.triangles.generate.valence_repair import repair_valences
+from img2tri.triangles.generate.quality_smoothing import SAFE, raise_sliding, smooth, smooth_and_raise
+from img2tri.triangles.generate.valence_repair import flip_valences, repair_valences
 from img2tri.triangles.min_angle_tangents import min_angle_tangents
 
 CLEAR = 0.66  # lattice nodes nearer to an outline or apex than this times the wanted length are dropped
+WITHIN = 0.3  # of the shorter part beside it: how far a point slides in which a segment was divided
 NUDGE, GOLDEN = 1e-7, 0.618  # of the shortest segment: how far free points are put off; of a turn, from one to the next: any odd part
+
+
+Settle = Callable[[Floats], Floats]
+"""From where points (n, 2) of outlines are wanted to where they may be, near where they are."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,7 +153,24 @@ def finish_strip(strip: Strip, relaxed: RegionMesh, first: Points) -> RegionMesh
     if tangents is None or (tangents < np.tan(np.radians(SAFE))).any():
         mesh = _triangulated(strip, vertices[:fixed], np.concatenate([vertices[fixed:][stays[fixed:]], added]))
         vertices, triangles, codes, free, tangents = mesh.vertices, mesh.triangles, mesh.codes, _free(strip, mesh), None
-    return RegionMesh(smooth_and_raise(vertices, triangles, free, tangents), triangles, codes)
+    triangles, flipped = flip_valences(vertices, triangles, free)
+    return RegionMesh(smooth_and_raise(vertices, triangles, free, None if flipped else tangents), triangles, codes)
+
+
+def slide_again(strip: Strip, mesh: RegionMesh, limits: Floats, settle: Settle) -> RegionMesh:
+    """Raise the worst angles of a finished strip by letting the first points slide once more, within limits (n,), as the caller settles it.
+
+    Points in which segments were divided slide along these.
+    """
+    fixed = len(strip.constraints.points)
+    placed = replace(strip.constraints, points=mesh.vertices[:fixed])
+
+    def settled(vertices: Points) -> Points:
+        places = as_complex(settle(as_rows(vertices[: len(limits)])))
+        return np.concatenate([placed.on_segments(len(limits), np.concatenate([places, vertices[len(limits) : fixed]])), vertices[fixed:]])
+
+    lines = placed.slide_lines(limits, within=WITHIN)
+    return replace(mesh, vertices=raise_sliding(mesh.vertices, mesh.triangles, _free(strip, mesh), lines, settled))
 
 
 def _triangulated(strip: Strip, fixed: Points, free: Points) -> RegionMesh:

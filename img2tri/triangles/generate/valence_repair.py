@@ -1,8 +1,8 @@
-r"""Valence repair: points are added and removed where a vertex has too many or too few triangles.
+r"""Valence repair: points are added and removed, and edges flipped, where a vertex has too many or too few triangles.
 
-In: a mesh and which of its vertices are free. Out: points to add, and which vertices stay. No smoothing makes good triangles around an
-inner vertex of valence 4 (angles about 90 degrees) or 8 (about 45). Here the former are taken away and the latter split in two;
-triangulated anew, this leaves vertices of valence 5, 6 and 7::
+In: a mesh and which of its vertices are free. Out: points to add, and which vertices stay; or triangles, some edges flipped. No smoothing
+makes good triangles around an inner vertex of valence 4 (angles about 90 degrees) or 8 (about 45). Here the former are taken away and the
+latter split in two; triangulated anew, this leaves vertices of valence 5, 6 and 7::
 
       o---o---o             o---o---o
       |\  |  /|             |  / \  |
@@ -12,8 +12,17 @@ triangulated anew, this leaves vertices of valence 5, 6 and 7::
       |/  |  \|             |  \ /  |
       o---o---o             o---o---o
 
+What the triangulation leaves then are pairs of valences 5 and 7. Where two such pairs lie side by side, a flip makes all four 6; no
+Delaunay triangulation finds it, as it is better only once its vertices have moved::
+
+          5                     6
+         / \                   /|\
+        7---7       ->        6 | 6
+         \ /                   \|/
+          5                     6
+
 Valences are made even by flips, collapses and splits since W. H. Frey and D. A. Field, Mesh relaxation: a new technique for improving
-triangulations, Int. J. Numer. Methods Eng. 31, 1991, https://doi.org/10.1002/nme.1620310607; flips are left to the triangulation.
+triangulations, Int. J. Numer. Methods Eng. 31, 1991, https://doi.org/10.1002/nme.1620310607.
 """
 
 from __future__ import annotations
@@ -21,8 +30,12 @@ from __future__ import annotations
 import numpy as np
 
 from img2tri.arrays import Bools, Floats, Ints, Points, runs
+from img2tri.triangles.min_angle_tangents import narrower
 
 TOO_MANY = 1.5  # triangles more, or less, than there should be
+FLIPS = 2  # rounds of flips; there is little left to flip then
+UNEVEN = 3  # by how much the valences at the ends of an edge have to exceed those opposite it for a flip
+FLAT = 20.0  # degrees: no flip makes a smaller angle, which smoothing might not open again
 
 
 def excess(vertices: Points, triangles: Ints) -> Floats:
@@ -46,6 +59,49 @@ def repair_valences(vertices: Points, triangles: Ints, free: Bools) -> tuple[Poi
     stays[centre] = False
     crowded = extra[centre] > 0
     return _split(vertices, extra, centre, neighbour, start[crowded[start]]), stays
+
+
+def flip_valences(vertices: Points, triangles: Ints, free: Bools) -> tuple[Ints, bool]:
+    """Return the triangles (m, 3) after flips of edges between free vertices that make valences more even, and whether there were any.
+
+    A flip takes a triangle from the ends of the edge and gives one to the vertices opposite it. The sum of the squares of what valences
+    differ from 6 falls by it where those at the ends exceed those opposite by three.
+    """
+    triangles, n = triangles.copy(), len(vertices)
+    valence = np.where(free, np.bincount(triangles.ravel(), minlength=n), 0)  # no edge at a fixed vertex is flipped
+    for done in range(FLIPS):
+        one, other = _flippable(triangles, valence)
+        a, b, c = (np.roll(triangles, -k, axis=1).ravel()[one] for k in (1, 2, 0))
+        d = triangles.ravel()[other]
+        uneven = valence[a] + valence[b] - valence[c] - valence[d]
+        first, second = np.stack([c, a, d], axis=1), np.stack([d, b, c], axis=1)
+        gains = (uneven >= UNEVEN) & free[c] & free[d] & ~narrower(vertices, first, FLAT) & ~narrower(vertices, second, FLAT)
+        if not gains.any():
+            return triangles, done > 0
+        # Of edges that have a vertex in common the most uneven one is flipped.
+        rank = np.argsort(np.argsort(np.where(gains, -uneven, 0), kind="stable"))
+        least = np.full(n, len(rank))
+        for corner in (a, b, c, d):
+            np.minimum.at(least, corner[gains], rank[gains])
+        flipped = gains & (np.min([least[corner] for corner in (a, b, c, d)], axis=0) == rank)
+        triangles[one[flipped] // 3], triangles[other[flipped] // 3] = first[flipped], second[flipped]
+        for corner, more in ((a, -1), (b, -1), (c, 1), (d, 1)):
+            valence[corner[flipped]] += more
+    return triangles, True
+
+
+def _flippable(triangles: Ints, valence: Ints) -> tuple[Ints, Ints]:
+    """Return edges whose ends have more than 12 triangles together, by the corners (k,) opposite them in their two triangles.
+
+    A corner is counted through the rows of triangles; the edge opposite it runs from the next one to that after.
+    """
+    a, b = (np.roll(valence[triangles], -k, axis=1).ravel() for k in (1, 2))
+    corner = np.flatnonzero(a + b > 12)
+    a, b = (triangles.ravel()[corner - corner % 3 + (corner + k) % 3] for k in (1, 2))
+    key = np.minimum(a, b) * len(valence) + np.maximum(a, b)
+    order = np.argsort(key, kind="stable")
+    twice = np.flatnonzero(np.diff(key[order]) == 0)
+    return corner[order[twice]], corner[order[twice + 1]]
 
 
 def _neighbourhoods(vertices: Points, triangles: Ints, chosen: Bools) -> tuple[Ints, Ints, Ints]:

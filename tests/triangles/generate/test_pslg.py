@@ -98,3 +98,26 @@ def test_what_ends_a_divided_segment_has_no_line():
     divided, _, _ = outlines.divided(sizes(lambda x: np.full(len(x), 4.0)))
     assert len(divided.segments) == 7
     assert divided.slide_lines(np.full(6, 0.1)).at.tolist() == [2, 3, 4, 5]
+
+
+def test_points_in_divided_segments_slide_and_stay_on_them():
+    z = np.array([0, 8, 8 + 1j, 8 + 2j, 4 + 2j, 2j])
+    ring = np.stack([np.arange(6), (np.arange(6) + 1) % 6], axis=1)
+    divided, _, _ = Pslg(z, ring, np.ones(6, int), np.zeros(6, int), np.arange(6)).divided(sizes(lambda x: np.full(len(x), 2.5)))
+    added = np.arange(6, len(divided.points))
+    lines = divided.slide_lines(np.full(6, 0.1), within=0.3)
+    assert lines.at.tolist() == [*range(6), *added]
+    assert lines.limits[:6] == pytest.approx(0.1)
+    assert (lines.limits[6:] > 0.3).all()
+    # Wherever the ends go, the points between lie on the line between them, one after the other.
+    rng = np.random.default_rng(0)
+    moved = divided.points + 0.2 * np.exp(2j * np.pi * rng.random(len(divided.points)))
+    found = divided.on_segments(6, moved)
+    assert np.array_equal(found[:6], moved[:6])
+    for segment in range(6):
+        chain = divided.segments[divided.origin == segment]
+        a, b = found[segment], found[(segment + 1) % 6]
+        way = (found[np.append(chain[:, 0], chain[-1, 1])] - a) / (b - a)
+        assert way.imag == pytest.approx(0, abs=1e-12)
+        assert (np.diff(way.real) > 0).all()
+    assert divided.on_segments(6, divided.points) == pytest.approx(divided.points)

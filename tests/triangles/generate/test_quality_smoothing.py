@@ -14,6 +14,7 @@ from img2tri.triangles.generate.quality_smoothing import (
     WORST_FIRST,
     SlideLines,
     defects_and_qualities,
+    raise_sliding,
     raise_worst_angles,
     smooth,
 )
@@ -131,6 +132,23 @@ def test_the_worst_angle_rises_and_moves_nothing_far_away(seed):
     assert smallest_angles(lifted, triangles).min() > smallest_angles(z, triangles).min()
     assert (lifted == z).sum() > len(z) / 3
     assert (raise_worst_angles(z, triangles, free, target=0.0) == z).all()
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_poor_angles_become_fewer_where_vertices_slide_and_all_stay_where_they_would_not(seed):
+    z, triangles, free, lines = with_lines(seed, 0.03)
+    z = smooth(z, triangles, free, SMOOTH)
+    before = smallest_angles(z, triangles)
+    target = np.percentile(before, 5)
+    slid = raise_sliding(z, triangles, free, lines, lambda wanted: wanted, target)
+    after = smallest_angles(slid, triangles)
+    assert after.min() >= before.min() - 1e-9
+    assert (after < target).sum() < (before < target).sum()
+    assert np.abs(slid[lines.at] - z[lines.at]).max() <= 0.03 + 1e-12
+    assert (slid == z).sum() > len(z) / 4
+    # What is settled may be worse than what was wanted: then nothing moves.
+    assert np.array_equal(raise_sliding(z, triangles, free, lines, lambda wanted: np.where(free, wanted, 0.7 * z), target), z)
+    assert np.array_equal(raise_sliding(z, triangles, free, lines, lambda wanted: wanted, before.min() - 1), z)
 
 
 def wheel(spokes):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from img2tri.triangles.generate.valence_repair import excess, repair_valences
+from img2tri.triangles.generate.valence_repair import excess, flip_valences, repair_valences
 
 CENTRE = 30 - 20j
 
@@ -90,3 +90,39 @@ def test_free_vertices_without_triangles_go():
     free = np.isin(np.arange(len(lonely)), (0, 7))
     _, stays = repair_valences(lonely, triangles, free)
     assert stays.tolist() == 7 * [True] + [False, True]
+
+
+def lattice(n=8):
+    """Equilateral triangles: nodes (n * n,), triangles, and which nodes are inside."""
+    row, column = np.divmod(np.arange(n * n), n)
+    at = np.flatnonzero((row < n - 1) & (column < n - 1))
+    triangles = np.concatenate([np.stack([at, at + 1, at + n], axis=1), np.stack([at + 1, at + n + 1, at + n], axis=1)])
+    return column + row * (0.5 + 0.75**0.5 * 1j), triangles, (np.minimum(row, column) > 0) & (np.maximum(row, column) < n - 1)
+
+
+def test_valences_of_5_and_7_side_by_side_become_6():
+    vertices, good, inside = lattice()
+    a, b, c, d = 27, 28, 35, 36  # b and c share an edge; the flip to a and d makes valences of 5, 7, 5, 7
+    spoilt = good[~np.isin(good, [a, b, c, d]).all(axis=1)]
+    spoilt = np.concatenate([spoilt, [[a, b, d], [a, d, c]]])
+    assert np.bincount(spoilt.ravel())[[a, b, c, d]].tolist() == [7, 5, 5, 7]
+    mended, flipped = flip_valences(vertices, spoilt, inside)
+    assert flipped
+    assert (np.bincount(mended.ravel())[inside] == 6).all()
+    assert {tuple(sorted(t)) for t in mended.tolist()} == {tuple(sorted(t)) for t in good.tolist()}
+    assert ((vertices[mended[:, 1]] - vertices[mended[:, 0]]).conj() * (vertices[mended[:, 2]] - vertices[mended[:, 0]])).imag.min() > 0
+    # Not at vertices that stay where they are.
+    for fixed in (a, b, c, d):
+        kept, flipped = flip_valences(vertices, spoilt, inside & (np.arange(len(vertices)) != fixed))
+        assert not flipped
+        assert np.array_equal(kept, spoilt)
+
+
+def test_even_valences_and_flat_triangles_are_left():
+    vertices, good, inside = lattice()
+    assert not flip_valences(vertices, good, inside)[1]
+    a, b, c, d = 27, 28, 35, 36
+    spoilt = np.concatenate([good[~np.isin(good, [a, b, c, d]).all(axis=1)], [[a, b, d], [a, d, c]]])
+    moved = vertices.copy()
+    moved[a] += 0.9 * ((moved[b] + moved[c]) / 2 - moved[a])  # all but on the edge that would come
+    assert not flip_valences(moved, spoilt, inside)[1]
