@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from img2tri.arrays import Floats, Ints, cross
-from img2tri.shapes.place.constrained_smoothing import AT_BOUND, BoundedChains, swept_areas
+from img2tri.shapes.place.constrained_smoothing import AT_BOUND, BoundedChains, rounding_of_areas, swept_areas
 from img2tri.shapes.region_pressures import region_pressures
 
 SAME_AREA = 1e-12  # of the area of a region: what it may lack
@@ -33,12 +33,13 @@ def exchange_areas(s: BoundedChains, shift: Floats, wanted: Floats, left: Ints, 
     """
     at, chain, size = s.chains.indices, s.chains.chain, len(areas)
     begin, end = s.chains.ring_ends
+    enough = np.maximum(SAME_AREA * np.maximum(areas, 1), rounding_of_areas(s))
     for _ in range(EXCHANGES):
         moved = s.points + shift * s.axis
         missing = wanted - swept_areas(moved, s)
         lacking = (np.bincount(left, missing, size) - np.bincount(right, missing, size)).astype(np.float64)
         lacking[0] = 0
-        if (np.abs(lacking) <= SAME_AREA * np.maximum(areas, 1)).all():
+        if (np.abs(lacking) <= enough).all():
             break
         z = moved[at]
         ahead, behind = np.roll(z, -1), np.roll(z, 1)

@@ -38,6 +38,7 @@ RING_SCALES = 3.0  # the least number of points of a ring that is smoothed, in s
 SHORTEST_NARROW, SHORTEST_WIDE = 3, 11  # points: open chains with no more are not smoothed
 SMALLEST_NARROW, SMALLEST_WIDE = 9, 54  # points: the same for rings
 AT_BOUND = 1e-9  # what lies so near to a bound lies there, up to rounding
+SWEPT_ROUNDING = 4e-15  # of the square of the largest coordinate: areas are not known better
 NO_STEP = 1e-12  # px, a step that changes nothing
 BATCH = 1 << 15  # points of chains smoothed at a time: what is laid out for them fits the cache, and takes little memory
 BENDS = 2  # how often a spline is bent towards the bounds it misses
@@ -209,6 +210,7 @@ def restore_swept_areas(s: BoundedChains, shift: Floats, wanted: Floats) -> Floa
     ring_start, ring_end = s.chains.ring_ends
     # All by entries; the last one of a ring follows its first.
     points, axis, low, high, t = s.points[at], s.axis[at], s.low[at], s.high[at], shift[at]
+    rounding = rounding_of_areas(s)
     for _ in range(AREA_ROUNDS):
         z = points + t * axis
         ahead, behind = np.roll(z, -1), np.roll(z, 1)
@@ -221,13 +223,18 @@ def restore_swept_areas(s: BoundedChains, shift: Floats, wanted: Floats) -> Floa
         free[ring_end] = False
         gain = np.bincount(chain, np.abs(width) * free, len(wanted))
         step = np.divide(missing, gain, out=np.zeros_like(gain), where=gain > 0.1)
-        if np.abs(step).max(initial=0) < NO_STEP:
+        if np.abs(step).max(initial=0) < NO_STEP or (np.abs(missing) <= rounding).all():
             break
         t = np.clip(t + np.clip(step, -0.25, 0.25)[chain] * np.sign(width) * free, low, high)
         t[ring_end] = t[ring_start]
     result = shift.copy()
     result[at] = t
     return result
+
+
+def rounding_of_areas(s: BoundedChains) -> float:
+    """Return how well swept areas are known: they are seen from the origin, which may be far away."""
+    return float(SWEPT_ROUNDING * np.abs(s.points).max(initial=0.0) ** 2)
 
 
 def swept_areas(z: Points, s: BoundedChains) -> Floats:

@@ -32,8 +32,6 @@ class PaddedChains:
         (k,) bool, the chain is a ring.
     node
         (k,) bool, the own places at the ends of open chains.
-    end
-        (k,) the point of the node an open chain is turned about, at its padding; elsewhere the point itself.
     """
 
     def __init__(self, chains: ChainIndex, chosen: Bools, padding: int) -> None:
@@ -54,13 +52,12 @@ class PaddedChains:
         self.source, self.original = indices[first[which] + along], begin + along
         self.chain, self.ring = which, ring[which]
         self.node = ~self.ring & ((place == 0) | (place == steps[which]))
-        end = np.where(place < 0, indices[first[which]], indices[first[which] + steps[which]])
-        self.end = np.where(self.own | self.ring, self.source, end)
         # A turn about the last node Z and one about the first node A move a point by 2 (Z - A).
         self.sign = np.where(turned, -1.0, 1.0)
-        self._first, self._last = indices[first[which]], indices[first[which] + steps[which]]
-        self._from_first = np.where(ring[which], 0.0, -2.0 * turns)
-        self._from_last = np.where(ring[which], 0.0, 2.0 * turns + 2.0 * turned)
+        self._beyond = out[~self.ring[out]]
+        of, twice = which[self._beyond], 2.0 * turns[self._beyond]
+        self._first, self._last = indices[first[of]], indices[first[of] + steps[of]]
+        self._from_first, self._from_last = -twice, twice + 2.0 * turned[self._beyond]
 
     def within(self, reach: int) -> Bools:
         """Tell which places (k,) are own ones, or at most so many places from those of their chain."""
@@ -68,9 +65,8 @@ class PaddedChains:
 
     def points(self, z: Points) -> Points:
         """Lay points out on the line, (n,) to (k,)."""
-        beyond = np.flatnonzero((self._from_first != 0) | (self._from_last != 0))
         line: Points = self.sign * z[self.source]
-        line[beyond] += self._from_first[beyond] * z[self._first[beyond]] + self._from_last[beyond] * z[self._last[beyond]]
+        line[self._beyond] += self._from_first * z[self._first] + self._from_last * z[self._last]
         return line
 
 
