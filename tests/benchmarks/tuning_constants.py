@@ -1,4 +1,4 @@
-"""What each tuning constant of shapes, recipes and mesh tools is worth: halve it, double it, and see which measures move.
+"""What each tuning constant of the rooms that make meshes is worth: halve it, double it, and see which measures move.
 
 In: the package that Python imports. Out: a table of constants, and of measures that change by more than `SHOWN` of themselves.
 
@@ -7,26 +7,21 @@ In: the package that Python imports. Out: a table of constants, and of measures 
 
 from __future__ import annotations
 
-import importlib
-import pkgutil
 import sys
 import warnings
 
 import numpy as np
+import pytest
 import specimens
+import tuning
 from benchmarks.shapes import blob, gear
 
-import img2tri.recipes
-import img2tri.shapes
-import img2tri.triangles.tools
 from img2tri import mesh_image
 from img2tri.shapes.place.placement import place_outlines
 from img2tri.shapes.trace.crack_edges import find_crack_edges
 from img2tri.types import Frame
 
 SHOWN = 0.02
-ROOMS = (img2tri.shapes, img2tri.recipes, img2tri.triangles.tools)
-MODULES = [importlib.import_module(found.name) for room in ROOMS for found in pkgutil.walk_packages(room.__path__, f"{room.__name__}.")]
 Y, X = np.mgrid[:128, :128] + 0.5
 GRAY = np.rint(255 * np.clip(40.3 - np.hypot(X - 61.2, Y - 66.7) + 0.5, 0, 1)).astype(np.uint8)
 RNG = np.random.default_rng(1)
@@ -81,34 +76,20 @@ def measures() -> dict[str, float]:
     return found
 
 
-def _is_number(value: object) -> bool:
-    """Tell a number, or several of them; switches are none."""
-    if isinstance(value, tuple):
-        return len(value) > 0 and all(_is_number(one) for one in value)
-    return isinstance(value, int | float | np.floating) and not isinstance(value, bool)
-
-
 def tried(name: str, factor: float) -> dict[str, float] | str:
     """Measure with one constant multiplied, in every module that has it."""
-    homes = [module for module in MODULES if name in vars(module)]
-    value = getattr(homes[0], name)
-    new = tuple(type(v)(v * factor) for v in value) if isinstance(value, tuple) else type(value)(value * factor)
-    try:
-        for module in homes:
-            setattr(module, name, new)
-        return measures()
-    except Exception as error:  # whatever a wrong constant leads to is a finding
-        return f"{type(error).__name__}: {error}"[:60]
-    finally:
-        for module in homes:
-            setattr(module, name, value)
+    with pytest.MonkeyPatch.context() as patch:
+        try:
+            tuning.change(patch, name, factor)
+            return measures()
+        except Exception as error:  # whatever a wrong constant leads to is a finding
+            return f"{type(error).__name__}: {error}"[:60]
 
 
 def main(names: list[str]) -> None:
-    every = {name for module in MODULES for name, value in vars(module).items() if name.isupper() and _is_number(value)}
     before = measures()
     print(", ".join(f"{key} {value:.3g}" for key, value in before.items()), flush=True)
-    for name in names or sorted(every):
+    for name in names or sorted(tuning.constants()):
         for factor in (0.5, 2.0):
             after = tried(name, factor)
             if isinstance(after, str):
