@@ -31,7 +31,7 @@ HELD = {  # by tests of their own
 
 REASONS = {
     # What differs by rounding alone is the same; anything between 1e-14 and what can be seen serves.
-    "LEAST_WAY "
+    "LEAST_WAY SWEPT_ROUNDING "
     "ON_SIDE AT_BOUND NO_STEP SAME_AREA SAME_PLACE ROUNDED JUST_WITHIN ON_AXIS ROUNDING SAME ROW_ROUNDING TANGENT_ROUNDING LEAST_MOVE":
         "rounding",
     # Time or memory; the mesh is the same, up to rounding.
@@ -62,6 +62,8 @@ REASONS = {
     "ACROSS EDGES_IN_CELL": "of the overview picture: as fine as a screen shows, and no cell without triangles",
     "SMALLEST_NARROW": "rings of fewer points are left as they are; twice as many are as good on discs of 6 px and on tiny maps",
     "WELL_CONDITIONED": "stiffness up to which solving once leaves no error of rounding that can be seen",
+    "POOR POOR_RINGS SLIDE_AGAIN": "vertices on outlines slide once more only where a mesh has angles below this, and only there",
+    "WITHIN": "as SLIDE: points in which segments were divided keep their order, and a third of their distance",
     "TURN_ENOUGH": "half a degree below the least wedge is as good; 0 takes all rounds",
     "SMALL_ENOUGH": "saves a second grid of sizes where the first is nearly as fine as wanted; 1 to 2 serve",
     "SOME_POINTS POINTS_EACH": "a bound of work for an angle beyond what was asked; refinement for that needs fewer",

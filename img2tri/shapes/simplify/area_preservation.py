@@ -16,7 +16,7 @@ from img2tri.shapes.simplify.simplification import Simplification
 from img2tri.shapes.simplify.vertex_offsets import NormalOffsets, areas_beside, chord_arc_areas
 from img2tri.shapes.trace.dual_edges import pixel_areas
 
-LACKING_AREA = 0.003  # of the a region: what it may lack before it gets more vertices
+LACKING_AREA = 0.003  # of the area of a region: what it may lack before it gets more vertices
 GREAT = 0.8  # of the greatest chord-arc area of a chain: the chords that get them
 EXCHANGE_ROUNDS = 3  # of leaving out vertices that cannot move the way they should
 LEAST_ROOM = 1e-3  # px, vertices that can move no farther are left out

@@ -30,7 +30,7 @@ from img2tri.shapes.simplify.simplification import SAME_PLACE, Simplification
 from img2tri.shapes.simplify.vertex_offsets import offset_towards_arcs
 
 LEANS, ENOUGH = 4, 0.95  # how often chords are moved towards their arcs at first, to come within this share of the tolerance
-LEAST_MOVE = 1e-4  # px
+LEAST_MOVE = 1e-4  # px: vertices that would move by less stay
 SHORTEST_PART = 1.0  # px, conflicting chords are split into shorter parts only after their ends are snapped
 SHORTEST_CHORD = 0.3  # px, chords shorter than this are not left
 MOST_ROUNDS = 1000  # of splitting; thirty are many

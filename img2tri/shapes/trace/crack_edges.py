@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from img2tri.arrays import Bools, Ints, neighbour_changes
 
-NODE = -1
+NODE = -1  # the successor of a crack edge that ends at a node
 
 
 @dataclass(frozen=True, eq=False)

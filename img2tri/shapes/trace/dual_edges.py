@@ -26,8 +26,8 @@ from img2tri.types import Frame, Outlines
 
 BOUND = 0.49  # of the dual edge from its middle, to either side: no crossing comes nearer to a pixel centre
 MOST_SHIFT = 0.25  # of the dual edge: how far a fair middle is from the middle
-LEAST_WIDTH = 0.1  # px
-FAIR_ROUNDS = 16
+LEAST_WIDTH = 0.1  # px: where a shift sweeps less than this, there is nothing to give back by it
+FAIR_ROUNDS = 16  # of sharing shifts among the corners beside them; a few settle
 BLUNT = np.cos(np.radians(81.0))  # the cosine of the least angle that outlines through fair middles may have
 BLUNT_ROUNDS, SMALLER = 40, 0.9  # of making shifts smaller where angles are less than that, and by how much each time
 

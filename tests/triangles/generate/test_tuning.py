@@ -63,6 +63,7 @@ MATTERS = [  # constant, factor, family, and which measure falls by how much: wo
     ("WORST_PASSES", 0.5, "uneven", 0, 0.8), ("WORST_RINGS", 0.34, "square", 0, 0.6), ("CLEAR", 2, "sliding", 1, 0.006),
     ("TOO_MANY", 0.5, "sliding", 0, 2), ("RESERVE", 0, "drop", 0, 1), ("FEW", 0.5, "strip", 0, 1), ("SMOOTH", 0.2, "square", 1, 0.001),
     ("WORST_FIRST", 0.4, "speck", 0, 0.4), ("MARGIN", 0, "grains", 1, 0.0001),
+    ("FLIPS", 0, "uneven", 0, 1.2), ("UNEVEN", 2, "uneven", 0, 1.2), ("FLAT", 2, "uneven", 0, 1.2),
 ]  # fmt: skip
 
 
