@@ -74,10 +74,14 @@ def place_outlines(
     shift = bend_to_nodes(bounded, np.where(dual_edges.slides, shift, 0.0), ends, dual_edges.bounds != 0)
     wanted = _wanted_areas(bounded, dual_edges, slack)
     shift = restore_swept_areas(bounded, shift, wanted)
+    areas, free = pixel_areas(dual_edges), bounded
     if dual_edges.is_junction.any():
         bounded, shift = open_wedges(bounded, shift, dual_edges.blunt_middle, dual_edges.is_junction, dual_edges.bounds)
         wanted = _wanted_areas(bounded, dual_edges, slack)
-    shift = exchange_areas(bounded, shift, wanted, *dual_edges.regions, pixel_areas(dual_edges))
+    shift = exchange_areas(bounded, shift, wanted, *dual_edges.regions, areas)
+    if dual_edges.is_junction.any():
+        # Regions whose crossings all lie beside junctions get what they lack by these, though wedges close a little.
+        shift = exchange_areas(replace(free, points=bounded.points), shift, wanted, *dual_edges.regions, areas)
     return dual_edges.outlines(bounded.points + shift * dual_edges.vector), dual_edges
 
 

@@ -134,6 +134,16 @@ def test_many_label_maps(case, connectivity, corners, frame):
     check_areas(labels, polygons, placed_in)
 
 
+@pytest.mark.parametrize("seed", [44, 131, 167, 235, 243, 624, 949, 1460])
+def test_areas_are_kept_where_all_crossings_of_a_region_lie_beside_junctions(seed):
+    """These had no other crossing to get their area by."""
+    rng = np.random.default_rng(seed)
+    size = rng.integers(3, 7), rng.integers(3, 7)
+    labels = rng.integers(1, int(rng.integers(3, 7)), size)
+    _, polygons, frame = check(labels, connectivity=8 if seed % 3 == 0 else 4, corners=bool(seed % 2))
+    check_areas(labels, polygons, frame)
+
+
 @pytest.mark.parametrize("corners", [True, False])
 @pytest.mark.parametrize("sides", [(1, 1), (1, 7), (2, 2), (2, 3), (2, 5), (2, 6), (2, 9), (3, 7), (4, 5)])
 def test_bars_keep_their_area_and_their_ends(sides, corners):
