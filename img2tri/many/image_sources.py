@@ -93,8 +93,21 @@ def _pages(path: str, step: float | None, page: int | None) -> Iterator[OneImage
     if count == 1:
         yield OneImage(path, path, {} if page is None else {"page": page})
         return
+    heights = _heights(path, count, step)
     for number in range(count):
-        yield OneImage(f"{path}[{number}]", path, {"page": number}, None if step is None else number * step)
+        yield OneImage(f"{path}[{number}]", path, {"page": number}, None if heights is None else heights[number])
+
+
+def _heights(path: str, count: int, step: float | None) -> list[float] | None:
+    """Return at which heights the pages of a file lie: as said, or as a DICOM file says."""
+    if step is not None:
+        return [number * step for number in range(count)]
+    if not path.lower().endswith(".dcm"):
+        return None
+    from img2tri.raster.files.dicom import frame_heights
+
+    found = frame_heights(path)
+    return found if found is not None and len(found) == count else None
 
 
 def _planes(prefix: str, stack: Any, step: float | None) -> Iterator[OneImage]:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from img2tri.arrays import Bools
 from img2tri.errors import FileError, ImageError, ParameterError, shown
-from img2tri.raster.metadata.nodata import GDAL_NODATA, either, equal_to, present
+from img2tri.raster.metadata.nodata import GDAL_NODATA, either, gdal_nodata, present
 
 SOURCE_SUFFIXES = (".zarr", ".npy", ".h5", ".hdf5", ".tif", ".tiff")
 
@@ -81,7 +81,7 @@ class PixelSource:
         if values.shape != expected:
             raise FileError(f"{self.name}: {where}: expected pixels of shape {expected}, as its own shape says, found {values.shape}")
         noted = getattr(self.array, "nodata", None)
-        return values, either(missing, None if noted is None else equal_to(values, noted))
+        return values, either(missing, gdal_nodata({GDAL_NODATA: noted}, values))
 
 
 def digest(values: NDArray[Any], missing: Bools | None) -> str:
@@ -174,7 +174,7 @@ def _tiff(path: Path) -> Any:
         tag = file.pages[0].tags.get(GDAL_NODATA)  # type: ignore[union-attr]
         colours = file.pages[0].samplesperpixel > 1  # type: ignore[union-attr]
     store: Any = tifffile.imread(path, aszarr=True, level=0)
-    plane = _Plane(zarr.open(store, mode="r"), colours, None if tag is None else str(tag.value).strip("\0 "))
+    plane = _Plane(zarr.open(store, mode="r"), colours, None if tag is None else str(tag.value))
     weakref.finalize(plane, store.close)
     return plane
 

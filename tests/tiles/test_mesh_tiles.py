@@ -19,7 +19,9 @@ from img2tri.options.all_options import checked
 from img2tri.raster.labels.segmentation import Segmentation
 from img2tri.tiles import block_plan, mesh_block
 from img2tri.tiles.parts.load_parts import load_tiles
-from img2tri.tiles.seams.both_meshes import ALIKE
+from img2tri.tiles.seams.both_meshes import Territory, together
+from img2tri.tiles.seams.gap_attempts import ALIKE, Attempt
+from img2tri.tiles.seams.piece_seams import Piece
 from img2tri.tiles.window_regions import cut_out
 from img2tri.triangles.min_angle_tangents import smallest_angles
 from img2tri.types import Frame
@@ -271,7 +273,7 @@ def test_windows_make_nearly_the_same_mesh_around_their_common_border(monkeypatc
         near = (abs(mesh.vertices.real - 256) < 2 * edge) & (mesh.vertices.imag > 300)
         found.append(np.stack([mesh.vertices[near].real, mesh.vertices[near].imag], axis=1))
     one, other = found
-    alike = KDTree(other).query(one)[0] < ALIKE * edge
+    alike = KDTree(other).query(one)[0] < ALIKE[0] * edge
     assert len(alike) > 100
     assert alike.mean() > 0.97  # .91 without posts, .85 with lattices of their own too
 
@@ -289,3 +291,17 @@ def test_no_seam_is_to_be_seen():
     assert len(by_blocks) > 1500
     assert np.percentile(by_blocks, 1) > np.percentile(plain, 1) - 3
     assert ks_2samp(plain, by_blocks).statistic < 0.05  # .10 without posts and one lattice
+
+
+def test_where_a_way_did_not_do_vertices_take_no_places():
+    attempt = Attempt(0, [np.array([10 + 0j])], 5.0)
+    assert attempt.of(ALIKE, np.array([10 + 1j, 30 + 0j])).tolist() == [0.0, ALIKE[0]]
+    # Two triangles, and the same ones finished, one vertex of which lies a twentieth of an edge away.
+    none = np.zeros((0, 2), np.int64)
+    z, two = np.array([0, 1, 1 + 1j, 1j]), np.array([[0, 1, 2], [0, 2, 3]])
+    finished = Piece(z + np.array([0, 0, 0.05, 0]), two, np.ones(2, np.int64), none, none[:, 0])
+    territory = Territory(lambda places: np.zeros(places.shape), lambda places: np.ones(places.shape, bool), 9.0)
+    for alike, moved, count in ((0.12, 1, 4), (0.0, 0, 5)):
+        mesh = Piece(z, two, np.ones(2, np.int64), none, none[:, 0])
+        both = together(mesh, finished, np.zeros(2, bool), np.array([1]), territory, none, np.full(4, alike))
+        assert (both.moved.sum(), len(both.z)) == (moved, count)

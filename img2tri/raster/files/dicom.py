@@ -20,6 +20,7 @@ from img2tri.raster.files.decoded_image import DecodedImage, check_page
 from img2tri.raster.in_memory.array_checks import Pixels
 from img2tri.raster.metadata.pixel_size import positive_size
 
+PARALLEL = 1e-3  # by how much directions of parallel frames may differ
 PIXEL_DATA = ("PixelData", "FloatPixelData", "DoubleFloatPixelData")
 
 
@@ -74,6 +75,33 @@ def decode_dicom(source: Source, page: int, max_pixels: int) -> DecodedImage:
         if size is not None:
             return DecodedImage(values, notes | {"spacing_from": tag}, size, missing=missing)
     return DecodedImage(values, notes, missing=missing)
+
+
+def frame_heights(path: str) -> list[float] | None:
+    """Return how far each frame of a DICOM file lies from the first, along the normal of that, in millimetres.
+
+    From the positions of frames in the patient, else from the distance of slices. None if the file says neither, if frames are not
+    parallel, or if it cannot be read, which is for the reader of its pixels to tell.
+    """
+    try:
+        import pydicom
+
+        data: Any = pydicom.dcmread(path, force=True, stop_before_pixels=True)
+        pages = int(data.get("NumberOfFrames") or 1)
+        positions = [_of_frame(data, page, "PlanePositionSequence").get("ImagePositionPatient") for page in range(pages)]
+        directions = [_of_frame(data, page, "PlaneOrientationSequence").get("ImageOrientationPatient") for page in range(pages)]
+        if all(positions) and all(directions):
+            axes = np.array(directions, np.float64)
+            if np.abs(axes - axes[0]).max() > PARALLEL:
+                return None
+            along = (np.array(positions, np.float64) - np.array(positions[0], np.float64)) @ np.cross(axes[0, :3], axes[0, 3:])
+            # One position for all is that of the file.
+            if pages == 1 or np.ptp(along) > 0:
+                return [float(height) for height in along]
+        step = float(_of_frame(data, 0, "PixelMeasuresSequence").get("SpacingBetweenSlices") or data.get("SpacingBetweenSlices") or 0)
+    except Exception:  # whatever pydicom raises of a file that is none
+        return None
+    return [page * step for page in range(pages)] if step else None
 
 
 def _padding(stored: Pixels, data: Any) -> Bools | None:

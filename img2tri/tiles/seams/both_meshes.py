@@ -13,7 +13,6 @@ from img2tri.arrays import Bools, Floats, Ints, Points, as_rows
 from img2tri.tiles.seams.piece_seams import Piece, Sides, seams_around
 
 SAME = 1e-6  # px: vertices nearer to each other are one but for rounding
-ALIKE = 0.12  # of the shortest edge there: a vertex of the new mesh that is nearer to one of the finished pieces takes its place
 
 
 @dataclass(frozen=True)
@@ -83,7 +82,7 @@ class Both:
         return shapely.STRtree(shapely.polygons(as_rows(self.z[self.old.ravel()]).reshape(-1, 3, 2))) if len(self.old) else None
 
 
-def _on_finished(mesh: Piece, finished: Points) -> Points:
+def _on_finished(mesh: Piece, finished: Points, alike: Floats) -> Points:
     """Return the vertices of a mesh, those that are nearly at the place of a finished one there.
 
     Windows make nearly the same vertices of the same outlines and lattice; what they differ in comes from their frames, far away.
@@ -98,7 +97,7 @@ def _on_finished(mesh: Piece, finished: Points) -> Points:
         length = np.abs(z[b] - z[a])
         np.minimum.at(shortest, a, length)
         np.minimum.at(shortest, b, length)
-    reach = np.maximum(ALIKE * np.where(np.isfinite(shortest), shortest, 0.0), SAME)
+    reach = np.maximum(alike * np.where(np.isfinite(shortest), shortest, 0.0), SAME)
     query = cKDTree(as_rows(finished)).query(as_rows(z), distance_upper_bound=float(reach.max()))
     distance, nearest = np.asarray(query[0], np.float64), np.asarray(query[1], np.int64)
     close = np.flatnonzero(distance < reach)
@@ -110,9 +109,12 @@ def _on_finished(mesh: Piece, finished: Points) -> Points:
     return result
 
 
-def together(mesh: Piece, finished: Piece, lost: Bools, labels: Ints, territory: Territory, cut: Ints) -> Both:
-    """Bring both into the same numbers; only what is near counts, and of the finished triangles those not given up."""
-    own = _on_finished(mesh, finished.vertices)
+def together(mesh: Piece, finished: Piece, lost: Bools, labels: Ints, territory: Territory, cut: Ints, alike: Floats) -> Both:
+    """Bring both into the same numbers; only what is near counts, and of the finished triangles those not given up.
+
+    `alike` (n,) is how near, in edges, vertices of the new mesh are to finished ones whose places they take.
+    """
+    own = _on_finished(mesh, finished.vertices, alike)
     z, number = np.unique(np.concatenate([own, finished.vertices]), return_inverse=True)
     n, margin = len(z), territory.margin
     new, old = number[mesh.triangles], number[finished.triangles + len(mesh.vertices)]

@@ -19,6 +19,8 @@ WIDTHS = (1.4, 2.0, 0.8, 1.4, 1.4, 1.4, 1.4, 2.0, 1.4)
 SEGMENT_LENGTHS = (1.0, 1.0, 1.0, 1.4, 1.0, 1.0, 1.0, 1.0, 1.0)
 # Of the margin: how far around such places finished triangles are given up, too.
 EATEN = (0.0, 0.0, 0.0, 0.0, 0.15, 0.22, 0.3, 0.38, 0.45)
+# Of the shortest edge there: a vertex of the new mesh that is nearer to one of the finished pieces takes its place, at first.
+ALIKE = (0.12, 0.0)
 MOST_ATTEMPTS = 16
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from img2tri.arrays import Bools, Floats, Ints, Points, as_rows
 from img2tri.tiles.seams.block_core import core_put_back, core_set_aside
 from img2tri.tiles.seams.both_meshes import Both, Territory, together
-from img2tri.tiles.seams.gap_attempts import EATEN, MOST_ATTEMPTS, SEGMENT_LENGTHS, WIDTHS, Attempt
+from img2tri.tiles.seams.gap_attempts import ALIKE, EATEN, MOST_ATTEMPTS, SEGMENT_LENGTHS, WIDTHS, Attempt
 from img2tri.tiles.seams.gap_triangulation import Gap, GapWalls, gap_filled, improved, longest_sides
 from img2tri.tiles.seams.joint_check import check_joint
 from img2tri.tiles.seams.outline_splices import Ways, splice
@@ -98,7 +98,7 @@ def _joined(
     middle = finished.vertices[finished.triangles].mean(axis=1)
     far = territory.outside(finished.vertices)[finished.triangles].max(axis=1) > LOST * territory.margin
     lost = attempt.near(territory.margin * np.asarray(EATEN), middle) & ~far
-    both = together(band, finished, lost, labels, territory, cut)
+    both = together(band, finished, lost, labels, territory, cut, attempt.of(ALIKE, band.vertices))
     return _merged(both, labels, territory, attempt, off, tolerance, min_angle), lost
 
 

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from img2tri.errors import FileError, ImageError, Img2triError, ParameterError
+from img2tri.many.image_sources import each_image
 from img2tri.raster.labels.colours_to_gray import to_gray
 from img2tri.raster.labels.otsu_threshold import binarize
 from img2tri.raster.labels.rgb_to_labels import label_map
@@ -208,6 +209,24 @@ def test_dicom_frames_may_each_have_a_size_and_a_scale(pydicom, tmp_path):
         picture = read(tmp_path / "a.dcm", page=page)
         same(picture.values, FRAMES[page] * (page + 1.0) - 1)
         assert picture.frame.spacing == (0.25, 0.5)
+
+
+def test_dicom_frames_lie_at_their_heights_in_the_patient(pydicom, tmp_path):
+    tilted = item(pydicom, PlaneOrientationSequence=item(pydicom, ImageOrientationPatient=[1, 0, 0, 0, 0.6, 0.8]))
+    normal = np.array([0, -0.8, 0.6])
+    heights = [0.0, 2.5, 5.5, 7.0]
+    own = [
+        item(pydicom, PlanePositionSequence=item(pydicom, ImagePositionPatient=(np.array([3, 4, 5]) + z * normal).tolist()))[0]
+        for z in heights
+    ]
+    tags = {"SharedFunctionalGroupsSequence": tilted, "PerFrameFunctionalGroupsSequence": pydicom.Sequence(own)}
+    dicom(tmp_path / "a.dcm", FRAMES, **tags)
+    assert np.allclose([one.z for one in each_image(tmp_path / "a.dcm")], heights)
+    assert [one.z for one in each_image(tmp_path / "a.dcm", step=4.0)] == [0, 4, 8, 12]
+    dicom(tmp_path / "b.dcm", FRAMES, SpacingBetweenSlices=1.5)
+    assert [one.z for one in each_image(tmp_path / "b.dcm")] == [0, 1.5, 3, 4.5]
+    dicom(tmp_path / "c.dcm", FRAMES)
+    assert [one.z for one in each_image(tmp_path / "c.dcm")] == [None] * 4
 
 
 @pytest.mark.usefixtures("pydicom")
