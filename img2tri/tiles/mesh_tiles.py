@@ -129,6 +129,7 @@ def mesh_tiles(
     Examples
     --------
     >>> import tempfile
+    >>> import numpy as np
     >>> disc = np.hypot(*np.mgrid[-20:20, -20:20] + 0.5) < 15
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     made = mesh_tiles(disc, Path(folder) / "disc.zarr", edge_length=4)

@@ -6,13 +6,15 @@ once. A task whose worker is lost is done again by another.
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 from uuid import uuid4
 
 from img2tri.errors import FileError, Img2triError
 
-ROUNDS = 3  # how often tasks are sent again that a cluster has forgotten, as what they need was lost with a worker
+ROUNDS = 6  # how often tasks are sent again that a cluster has forgotten, as what they need was lost with a worker
+PAUSE = 0.5  # seconds, until a cluster has noticed that a worker is lost
 
 
 def done(
@@ -65,7 +67,11 @@ def _round(
     """Send tasks once, and yield the results of those that were not forgotten."""
     from distributed import as_completed
 
-    kept, once = client.scatter(shared, broadcast=True, hash=False), uuid4().hex
+    try:
+        kept, once = client.scatter(shared, broadcast=True, hash=False), uuid4().hex
+    except OSError:  # a worker was lost on the way
+        time.sleep(PAUSE)
+        return
     futures = {client.submit(_call, function, kept, task, key=f"{stage}-{name}-{once}", pure=False): name for name, task in tasks.items()}
     try:
         for future in as_completed(futures):

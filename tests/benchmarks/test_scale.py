@@ -6,6 +6,7 @@ pytest -m benchmark -s tests/benchmarks/test_scale.py
 from __future__ import annotations
 
 import json
+import math
 import resource
 import subprocess
 import sys
@@ -94,11 +95,11 @@ def test_a_hundred_thousand_pixels_squared_on_paper(tmp_path):
     """10^8 triangles on 100 workers, from blocks with as many triangles as those would have."""
     np.save(tmp_path / "image.npy", blobs(4096, 80))
     found = alone("tiles", tmp_path / "image.npy", tmp_path / "mesh.zarr", 18.0)
-    blocks, here, workers = -((-100_000 // BLOCK) ** 2), 4, 100
+    blocks, here, workers = math.ceil(100_000 / BLOCK) ** 2, 4, 100
     share, tasks = blocks / here, 4 * blocks
-    rounds = 4 * -(-blocks // (4 * workers))
+    rounds = 4 * math.ceil(blocks / (4 * workers))
     seconds = {stage: found["spent"].get(stage, 0.0) / here for stage in ("survey", "mesh", "seams", "save")}
-    wall = rounds * seconds["mesh"] + -(-blocks // workers) * (seconds["survey"] + seconds["seams"] + seconds["save"])
+    wall = rounds * seconds["mesh"] + math.ceil(blocks / workers) * (seconds["survey"] + seconds["seams"] + seconds["save"])
     margin = 2 * (8 * 18 + 32)
     pixels = 1e10 * (1 + ((BLOCK + margin) / BLOCK) ** 2)
     print(f"\n  {blocks:,} blocks, {found['n_triangles'] * share:.2g} triangles; {tasks:,} tasks, {tasks / 1000:.0f} s of a scheduler")

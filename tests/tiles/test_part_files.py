@@ -68,9 +68,12 @@ class Forgetful:
     """A client of a cluster that forgets some of what it is asked for the first time."""
 
     def __init__(self):
-        self.asked, self.keys = 0, set()
+        self.asked, self.scattered, self.keys = 0, 0, set()
 
     def scatter(self, shared, **_):
+        self.scattered += 1
+        if self.scattered == 1:
+            raise OSError("a worker is gone")
         return shared
 
     def submit(self, function, *given, key, **_):
