@@ -26,6 +26,8 @@ HELD = {  # by tests of their own
     "LENGTH_STEP": "shapes/sizes/test_user_size_field.py", "SEARCH": "recipes/test_second_order.py",
     "HALVINGS": "recipes/test_second_order.py",
     "DAMPING": "triangles/tools/test_laplacian_smoothing.py", "UNBOUNDED": "triangles/tools/test_quality_summary.py",
+    "NOISE": "shapes/place/test_noisy_edges.py", "NORMAL": "shapes/place/test_noisy_edges.py",
+    "SAMPLE": "shapes/place/test_noisy_edges.py", "PURE": "shapes/place/test_noisy_edges.py",
     "BLOCK_SIDE": "tiles/test_mesh_tiles.py", "PADDING": "shapes/place/test_smoothing_splines.py",
 }  # fmt: skip
 
@@ -57,6 +59,9 @@ REASONS = {
         "sectors lie .458 px off (test_node_placement allows .45), without turning those of halved discs .051 (.049)",
     "RIDGE": "chains that lead the same way; since AMID is there too, 0 and .1 move nodes by less than .01 px in the mean",
     "SPLITTINGS SPLITTINGS_NOT_SQUARE": "half of ATTEMPTS, or a quarter: rounds before outlines go back to their middles",
+    "COLUMN FARTHEST": "px that are asked across an edge: 3 and half are as good where edges are drawn by area; more finds other edges",
+    "NEAR_MIDDLE": "levels farther from the middle are iso-lines; a fifth or half of that changes discs by less than .002 px",
+    "MOST": "three quarters, as other edges may be near a quarter of all; 1 is as good where none is",
     "GIVES": "how far the rest of an outline gives area back after a way back: where pixels are not square only",
     "ENDLESS": "where opposite sides divide each other without end, segments are shorter than this; others are longer",
     "ACROSS EDGES_IN_CELL": "of the overview picture: as fine as a screen shows, and no cell without triangles",

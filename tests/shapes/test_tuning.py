@@ -202,6 +202,18 @@ def colours():
     return rms([off[(np.abs(off) < 2) & (np.abs(x - 0.3 * y) > 2.1)]])
 
 
+def ramps():
+    """A disc in gray with a slow and noisy edge, by a level and by the middle of both sides."""
+    from scipy.ndimage import gaussian_filter
+
+    values = gaussian_filter(200.0 * (np.hypot(X - 45.2, 90 - Y - 44.7) < 30.3), 1.5) + 6 * NOISE["gray"]
+    labels, result = largest(values > 100), []
+    for level in (100.0, None):
+        points = traced(labels, gray=values, level=level)[0].points
+        result.append(rms([np.hypot(*(points - (45.2, 44.7)).T) - 30.3]))
+    return tuple(result)
+
+
 def largest(mask):
     from scipy.ndimage import binary_closing, label
 
@@ -338,7 +350,8 @@ GROUPS = {
     "disc 6": lambda: (discs(6.4),), "disc 10": lambda: (discs(10.3),), "disc 21": lambda: (discs(21.3),),
     "disc 60": lambda: (discs(60.2),),
     "ellipses": lambda: (ellipses(),), "halves": lambda: halves(25.4), "walls": lambda: (walls(),), "framed": lambda: (framed(),),
-    "polygons": polygons, "squares": lambda: (squares(),), "teeth": lambda: (teeth(),), "gray": gray, "colours": lambda: (colours(),),
+    "polygons": polygons, "squares": lambda: (squares(),), "teeth": lambda: (teeth(),), "gray": gray, "ramps": ramps,
+    "colours": lambda: (colours(),),
     **{name: (lambda name=name: simplified(name)) for name in ("blob", "gear", "grains", "noise", "specks")},
     "gears": gears, "ring": ring, "slid": slid, "sized": sized, "cells": lambda: (cells(),), "long": long_chords,
     "checkers": checkers,
@@ -349,7 +362,8 @@ GROUPS = {
 REACHED = {
     "disc 6": (0.0755,), "disc 10": (0.0515,), "disc 21": (0.0347,), "disc 60": (0.0255,), "ellipses": (0.111,),
     "halves": (0.0463, 0.0505), "walls": (0.0655,), "framed": (0.0418,),
-    "polygons": (0.0, 0.23), "squares": (0.0,), "teeth": (18.0,), "gray": (0.0051, 0.068, 0.238), "colours": (0.0155,),
+    "polygons": (0.0, 0.23), "squares": (0.0,), "teeth": (18.0,), "gray": (0.0040, 0.055, 0.038), "ramps": (0.138, 0.158),
+    "colours": (0.0155,),
     "blob": (85, 0.03), "gear": (118, 0.12), "grains": (172, 0.115), "noise": (700, 0.31, 3.3), "specks": (700, 0.25),
     "gears": (745,), "ring": (1.1,), "slid": (0.5, 2.3), "sized": (0.03, 0.031, 31.5), "cells": (0.42,), "long": (120, 0.03),
     "tiny": (1480, 2.6, 0.06, 5.5), "oblong": (1260, 5.0, 0.1, 8.8), "wide": (1340, 2.8, 0.06, 22.5), "nearly": (650, 3.5, 0.06, 6.5),
@@ -361,7 +375,8 @@ MATTERS = [
     ("RING_SCALES", 2, "gray", 0), ("BENDS", 0.5, "disc 60", 0), ("MOST_BEND", 0.5, "disc 60", 0), ("BEND", 0.5, "disc 21", 0),
     ("ROUNDEST", 0.5, "disc 6", 0), ("LENGTHS", 0.5, "polygons", 0), ("OUT_OF_BLOCK", 0.5, "polygons", 0),
     ("SHORTEST_SIDE", 2, "polygons", 0), ("SLOPPY", 0, "polygons", 0), ("SKIPPED", 2, "polygons", 1), ("SAME_CORNER", 2, "squares", 0),
-    ("SHORTEST_ALIGNED", 2, "squares", 0), ("HARD", 0.5, "gray", 0), ("SURE", 0.5, "gray", 1), ("WINDOW", 2, "gray", 1),
+    ("SHORTEST_ALIGNED", 2, "squares", 0), ("HARD", 0.5, "gray", 0), ("SURE", 0.5, "ramps", 0),
+    ("SURE_AREA", 0.5, "gray", 0), ("SHARP_EDGE", 2, "gray", 1), ("DIAGONAL", 0, "gray", 0), ("WINDOW", 2, "gear", 1),
     ("SMALLEST_WIDE", 2, "disc 10", 0), ("SLIGHT", 0, "walls", 0),
     ("FEWEST", 8, "walls", 0),
     ("MISFIT", 0.5, "blob", 1), ("MOST_OFFSET", 2, "gear", 0), ("RING", 0.5, "ring", 0), ("ROOM_TO_EVEN", 0.5, "gear", 0),

@@ -8,7 +8,7 @@ long as what softens it is even on both sides::
                   A     A  |  B     B     four pixels are asked, of which the outer two count as pure where another edge is near
 
 For a straight edge drawn by area coverage, at any angle, that is right to 0.002 px in the mean, and 0.02 along the axes and diagonals; the
-place where the share of two pixels passes one half, as `iso_crossings` has it for gray values, to 0.06 px.
+place where the share of two pixels passes one half, to 0.06 px.
 """
 
 from __future__ import annotations

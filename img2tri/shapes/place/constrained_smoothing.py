@@ -28,6 +28,7 @@ from img2tri.arrays import Bools, ChainIndex, Floats, Ints, Points, cross
 from img2tri.shapes.place.along_the_arc import fade_out
 from img2tri.shapes.place.padded_chains import PaddedChains
 from img2tri.shapes.place.smoothing_splines import PADDING, CurvatureSpline, SmoothingSpline
+from img2tri.shapes.trace.dual_edges import BOUND
 
 NARROW, WIDE = (1.5, 4.0), (9.0, 22.0, 70.0)  # px, scales of splines smooth in x and y, and of those smooth in their curvature
 BASE = 7.0  # px, the scale of the spline that the wide ones are laid along
@@ -136,7 +137,10 @@ class _LaidOut:
         line = self.line = PaddedChains(s.chains, chosen, max(PADDING, math.ceil(3 * _bend(widest)) + 2))
         self.narrow = SmoothingSpline(line, line.points(s.points))
         self.axis, self.low, self.high = line.sign * s.axis[line.source], s.low[line.source], s.high[line.source]
-        self.misfit = MISFIT * s.slack[line.source] * np.abs(self.axis)
+        slack = s.slack[line.source]
+        self.misfit = MISFIT * slack * np.abs(self.axis)
+        # Bounds keep away from pixel centres: of a place that is known, that says nothing.
+        self.spare = np.where(slack < BOUND, 0.5 - BOUND, 0.0)
         which = np.flatnonzero(chosen)
         self.size = np.where(line.ring, np.diff(s.chains.starts)[which[line.chain]], np.inf)
         # Where on the line the two ends of each open chain are.
@@ -150,9 +154,8 @@ class _LaidOut:
         across = cross(axis, direction)
         steep, nothing = np.abs(across) > 1e-9, np.zeros(len(axis))
         t = np.divide(cross(off, direction), across, out=nothing.copy(), where=steep)[line.original]
-        bounded = np.clip(t, low, high)
         # How far bounds are missed counts across the spline: along dual edges that run nearly as it does, it says little.
-        miss = (t - bounded) * across
+        miss = (t - np.clip(t, low - self.spare, high + self.spare)) * across
         fits = self.narrow.arc.farther_than((np.abs(miss) > self.misfit) & ~line.node, WINDOW * scale)
         fits &= self.size > RING_SCALES * scale
         bent = fits & ~line.node
@@ -161,10 +164,9 @@ class _LaidOut:
             if not miss.any():
                 break
             t -= np.divide(fade_out(line, miss, _bend(scale)), across, out=nothing.copy(), where=steep)
-            bounded = np.clip(t, low, high)
-            miss = (t - bounded) * across
+            miss = (t - np.clip(t, low - self.spare, high + self.spare)) * across
         own = line.source[line.own]
-        shift[own] = np.where(line.node & (scale < FREE_ENDS), 0, bounded)[line.own]
+        shift[own] = np.where(line.node & (scale < FREE_ENDS), 0, np.clip(t, low, high))[line.own]
         level[own[fits[line.own]]] = k
         chain, end = np.nonzero(fits[self.node])
         there, of = self.node[chain, end], self.opened[chain]

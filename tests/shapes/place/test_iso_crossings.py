@@ -10,7 +10,7 @@ from scipy import ndimage
 from img2tri.raster.labels.segmentation import segment
 from img2tri.raster.reading import read
 from img2tri.recipes.conforming import trace_outlines
-from img2tri.shapes.place.iso_crossings import HARD, SURE, iso_crossings
+from img2tri.shapes.place.iso_crossings import HARD, SURE, SURE_AREA, iso_crossings
 from img2tri.shapes.polygons import region_polygons
 from img2tri.shapes.trace.crack_edges import find_crack_edges
 from img2tri.shapes.trace.dual_edges import BOUND, lay_out
@@ -228,17 +228,17 @@ def test_only_soft_edges_are_taken_at_their_word():
     image[:, 6:] = 100.0
     soft = image.copy()
     soft[:, 5] = 70.0  # between column 4, dark, and column 6: the edge is 0.7 of a pixel before column 6
-    for gray, expected, known in ((image, 0.0, False), (soft, 50 / 70 - 0.5, True)):
+    for gray, expected, known in ((image, 0.0, False), (soft, 0.3, True)):
         dual_edges, shift, slack = raw_crossings(gray, None, gray > 50)
         inner = dual_edges.vector != 0
         np.testing.assert_allclose(np.abs(shift[inner]), abs(expected), atol=1e-12)
-        assert (slack[inner] == (SURE if known else BOUND)).all()
+        assert (slack[inner] == (SURE_AREA if known else BOUND)).all()
     # Almost as great a contrast as that of the two sides counts as hard.
     for share, known in ((0.99 * HARD, True), (1.01 * HARD, False)):
         gray = image.copy()
         gray[:, 5] = 100 * (1 - share)
         dual_edges, shift, slack = raw_crossings(gray, None, gray > 50)
-        assert (slack[dual_edges.vector != 0] == (SURE if known else BOUND)).all()
+        assert (slack[dual_edges.vector != 0] == (SURE_AREA if known else BOUND)).all()
 
 
 @pytest.mark.parametrize("radius", [1.2, 3.3, 8])
