@@ -96,7 +96,8 @@ class _Sources:
             distance, nearest = self._tree.query(as_rows(points), distance_upper_bound=reach)
             return np.asarray(distance, np.float64), np.asarray(nearest, np.int64)
         across, up = (points.real[:, None] - self._places.real), (points.imag[:, None] - self._places.imag)
-        square = across * across + up * up
+        with np.errstate(over="ignore"):  # what is too far to be squared is out of reach, as it is for a search tree
+            square = across * across + up * up
         nearest = square.argmin(axis=1)
         distance = np.sqrt(square[np.arange(len(points)), nearest])
         near = distance < reach
