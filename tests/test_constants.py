@@ -28,6 +28,9 @@ HELD = {  # by tests of their own
     "DAMPING": "triangles/tools/test_laplacian_smoothing.py", "UNBOUNDED": "triangles/tools/test_quality_summary.py",
     "NOISE": "shapes/place/test_noisy_edges.py", "NORMAL": "shapes/place/test_noisy_edges.py",
     "SAMPLE": "shapes/place/test_noisy_edges.py", "PURE": "shapes/place/test_noisy_edges.py",
+    "TURN_SIDE": "shapes/simplify/test_sharp_turns.py", "SHARP_ANGLE": "shapes/simplify/test_sharp_turns.py",
+    "STRAIGHT_SIDE": "shapes/simplify/test_sharp_turns.py", "TURNS_APART": "shapes/simplify/test_sharp_turns.py",
+    "MIXED_CROSSINGS": "shapes/simplify/test_sharp_turns.py",
     "BLOCK_SIDE": "tiles/test_mesh_tiles.py", "PADDING": "shapes/place/test_smoothing_splines.py",
 }  # fmt: skip
 

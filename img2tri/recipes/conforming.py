@@ -21,6 +21,7 @@ from img2tri.shapes.periodic.paired_outlines import FILLINGS, PeriodicPairs, fin
 from img2tri.shapes.periodic.side_chains import cut_alike
 from img2tri.shapes.place.placement import place_on_pixel_sides, place_outlines
 from img2tri.shapes.simplify.set_back import set_back_near
+from img2tri.shapes.simplify.sharp_turns import sharp_turns
 from img2tri.shapes.simplify.simplification import Simplification, space_evenly
 from img2tri.shapes.simplify.tangential_relocation import relocate, slide_limits
 from img2tri.shapes.simplify.tolerance import split_near
@@ -108,7 +109,9 @@ def conform(
     count = len(outlines.left)
     tell("spacing" if count < CONFETTI else f"spacing {count:,} outlines; min_area would drop specks", 0.3)
     pairs = find_periodic_pairs(outlines, dual_edges, periodic)
-    posted = None if posts is None else posts(outlines)
+    posted = np.zeros(len(outlines.chains.indices), bool) if posts is None else posts(outlines)
+    if not stretched and not len(pairs.one):
+        posted |= sharp_turns(outlines)
     coarse = _spaced(outlines, dual_edges, pairs, sizes, tolerance, corners == "keep", keep_area, posted)
     if keep_area:
         coarse = with_areas_preserved(coarse, pairs, tolerance=tolerance)

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from img2tri.arrays import Floats, Points, as_complex, cross
+from img2tri.arrays import Floats, Ints, Points, as_complex, cross
 from img2tri.shapes.place.area_exchange import exchange_areas
 from img2tri.shapes.place.constrained_smoothing import BoundedChains, restore_swept_areas, swept_areas, widest_fitting_spline
 from img2tri.shapes.place.known_crossings import OutlineLevel, known_crossings
@@ -23,6 +23,8 @@ from img2tri.shapes.place.straight_chains import straightened
 from img2tri.shapes.trace.crack_edges import CrackEdges
 from img2tri.shapes.trace.dual_edges import BOUND, DualEdges, cut_chains, lay_out, pixel_areas
 from img2tri.types import ColourMix, Frame, Outlines
+
+MIXED_CROSSINGS = 2  # crossings to either side of a corner whose pixels may be mixed of more than two sides
 
 
 def place_outlines(
@@ -66,6 +68,7 @@ def place_outlines(
     if corners:
         node = len(dual_edges.crossed) + np.searchsorted(dual_edges.node_corner, at)
         points[node], movable[node] = sharp, False
+        slack = _unsure_beside(node, dual_edges, slack)
     bounded = _with_free_ends(_bounded(dual_edges, points, shift, slack), dual_edges)
     shift, ends = straightened(bounded, *widest_fitting_spline(bounded))
     # From here on the nodes on the frame stay where they slid to, and all others where their chains lead.
@@ -116,6 +119,17 @@ def _bounded(dual_edges: DualEdges, points: Points, shift: Floats, slack: Floats
     """Points shifted to where they are known to lie, with the bounds that are left to them."""
     low, high = np.maximum(-slack, -BOUND - shift), np.minimum(slack, BOUND - shift)
     return BoundedChains(points + shift * dual_edges.vector, dual_edges.vector, low, high, slack, dual_edges.chains)
+
+
+def _unsure_beside(corners: Ints, dual_edges: DualEdges, slack: Floats) -> Floats:
+    """Return the slack (n,) of crossings: gray values of pixels beside a corner are of both its sides, and tell where neither is."""
+    indices = dual_edges.chains.indices
+    at = np.flatnonzero(np.isin(indices, corners))[:, None] + np.arange(-MIXED_CROSSINGS, MIXED_CROSSINGS + 1)
+    beside = np.clip(at, 0, len(indices) - 1)
+    beside = indices[beside[dual_edges.chains.chain[beside] == dual_edges.chains.chain[at[:, [MIXED_CROSSINGS]]]]]
+    slack = slack.copy()
+    slack[beside] = BOUND
+    return slack
 
 
 def _with_free_ends(s: BoundedChains, dual_edges: DualEdges) -> BoundedChains:
