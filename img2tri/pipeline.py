@@ -201,8 +201,8 @@ def _chosen(o: MeshOptions, picture: Picture, zones: Segmentation, sizes: Sizes,
 def _check_found(outlines: Outlines, zones: Segmentation, o: MeshOptions, removed: int) -> None:
     """Refuse an image with nothing to mesh, and names of labels it does not have."""
     if len(outlines.labels) == 1:
-        absorbed = "" if o["absorb"] is None else ", and absorb="
-        raise ImageError(f"image: expected pixels to mesh, found none{_advice(zones.threshold, removed)}{absorbed}")
+        also = "".join(f", and {name}=" for name in ("absorb", "colors") if o[name] is not None)
+        raise ImageError(f"image: expected pixels to mesh, found none{_advice(zones.threshold, removed)}{also}")
     for named in o["names"] or {}:
         if named not in outlines.labels[1:]:
             raise ParameterError(f"names: expected labels of the image, found {named}; it has {outlines.labels[1:21].tolist()}")

@@ -66,7 +66,7 @@ CASES = [(option, odd) for option in OPTIONS for odd in ODD]
 
 # One that none of the options can be; all others are tried by  pytest -m slow.
 QUICK = ("0", "-1", "nan", "inf", "1e-300", "1e300", "2**64", "10**5000", "''", "'8 px'", "b'8'", "[]", "True", "object")
-QUICK += ("np.array([1, 2])",)
+QUICK += ("np.array([1, 2])", "np.array(3)", "range(10**12)")
 
 
 def sweep(cases):

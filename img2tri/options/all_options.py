@@ -14,6 +14,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar, cast, get_args, get_type_hints
 
+import numpy as np
+
 from img2tri.errors import FileError, ParameterError, UnknownOptionError
 from img2tri.options.image_options import NameOptions, PartOptions, ReadOptions, SegmentOptions, SpeckOptions, WidthOptions
 from img2tri.options.mesh_options import (
@@ -97,12 +99,17 @@ def checked(given: Mapping[str, Any], *, function: str = "mesh_image") -> MeshOp
             raise UnknownOptionError(f"{function}() got an unexpected keyword argument {name!r}{nearest(name, [*OPTIONS, 'progress'])}")
     values: dict[str, Any] = {}
     for name, option in OPTIONS.items():
-        value = given.get(name, option.default)
+        value = _alone(given.get(name, option.default))
         values[name] = value if value is None and takes_none(name) else option.check(name, value)
     for name, option in OPTIONS.items():
         if option.recipes and values["recipe"] not in option.recipes and values[name] is not None:
             raise ParameterError(f"{name}: not an option of recipe {values['recipe']!r}; leave it out, or choose {every(option.recipes)}")
     return cast(MeshOptions, values)
+
+
+def _alone(value: Any) -> Any:
+    """Return a value that is an array without dimensions as what is in it."""
+    return value.item() if isinstance(value, np.ndarray) and value.ndim == 0 and not np.ma.isMaskedArray(value) else value
 
 
 def of(group: type[G], options: MeshOptions) -> G:

@@ -18,6 +18,7 @@ from img2tri.options import parsing as texts
 Check = Callable[[str, Any], Any]
 
 MOST_COLOURS = 256
+MOST_LEVELS = 65535  # between the values of 16 bits
 
 
 def unchecked(_name: str, value: Any) -> Any:
@@ -150,9 +151,9 @@ def one_level_or_more(name: str, value: Any) -> Any:
         if isinstance(value, str) and value not in ("otsu", "alpha"):
             raise ParameterError(f"{name}: expected a number, 'otsu', 'alpha' or None, found {value!r}")
         return value if isinstance(value, str) else finite(name, value)
-    levels = [finite(name, level) for level in value]
-    if not levels or any(a >= b for a, b in itertools.pairwise(levels)):
-        raise ParameterError(f"{name}: expected rising numbers, like [110, 190], found {shown(value)}")
+    levels = [finite(name, level) for level in itertools.islice(value, MOST_LEVELS + 1)]
+    if not 0 < len(levels) <= MOST_LEVELS or any(a >= b for a, b in itertools.pairwise(levels)):
+        raise ParameterError(f"{name}: expected up to {MOST_LEVELS} rising numbers, like [110, 190], found {shown(value)}")
     return levels[0] if len(levels) == 1 else levels
 
 
@@ -169,7 +170,7 @@ def count_or_colours(name: str, value: Any) -> int | list[float]:
         return integer(name, value, least=1, most=MOST_COLOURS)
     if isinstance(value, (str, bytes, Mapping)) or not isinstance(value, Iterable):
         raise ParameterError(f"{name}: expected how many colours, or a list like ['#dc2828', 0x28a0dc], found {shown(value)}")
-    listed = [_colour(name, one) for one in value]
+    listed = [_colour(name, one) for one in itertools.islice(value, MOST_COLOURS + 1)]
     if not 0 < len(listed) <= MOST_COLOURS or len(set(listed)) < len(listed):
         raise ParameterError(f"{name}: expected 1 to {MOST_COLOURS} different colours, found {shown(value)}")
     return listed
