@@ -14,8 +14,6 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar, cast, get_args, get_type_hints
 
-import numpy as np
-
 from img2tri.errors import FileError, ParameterError, UnknownOptionError
 from img2tri.options.image_options import NameOptions, PartOptions, ReadOptions, SegmentOptions, SpeckOptions, WidthOptions
 from img2tri.options.mesh_options import (
@@ -108,8 +106,8 @@ def checked(given: Mapping[str, Any], *, function: str = "mesh_image") -> MeshOp
 
 
 def _alone(value: Any) -> Any:
-    """Return a value that is an array without dimensions as what is in it."""
-    return value.item() if isinstance(value, np.ndarray) and value.ndim == 0 and not np.ma.isMaskedArray(value) else value
+    """Return a value that is an array without dimensions as what is in it; by its name, since options are known without NumPy."""
+    return value.item() if type(value).__name__ == "ndarray" and value.ndim == 0 else value
 
 
 def of(group: type[G], options: MeshOptions) -> G:
