@@ -110,8 +110,9 @@ def conform(
     tell("spacing" if count < CONFETTI else f"spacing {count:,} outlines; min_area would drop specks", 0.3)
     pairs = find_periodic_pairs(outlines, dual_edges, periodic)
     posted = np.zeros(len(outlines.chains.indices), bool) if posts is None else posts(outlines)
+    # Outlines of stretched pixels got theirs with the turning points; opposite sides have to have their vertices alike.
     if not stretched and not len(pairs.one):
-        posted |= sharp_turns(outlines)
+        posted = posted | sharp_turns(outlines)
     coarse = _spaced(outlines, dual_edges, pairs, sizes, tolerance, corners == "keep", keep_area, posted)
     if keep_area:
         coarse = with_areas_preserved(coarse, pairs, tolerance=tolerance)
