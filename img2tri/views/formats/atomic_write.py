@@ -71,13 +71,13 @@ def known_suffix(path: str | os.PathLike[str], suffixes: Collection[str]) -> str
     return suffix
 
 
-def store(target: Path, data: bytes) -> None:
-    """Write `data` to `target`, which must come from `writable`; an older file is replaced in one step, and keeps its permissions.
+def store(target: Path, data: bytes, *, advice: str = "") -> None:
+    """Write `data` to `target`, which must be no link; an older file is replaced in one step, and keeps its permissions.
 
     Raises
     ------
     FileError
-        If the system refuses, for want of space or otherwise.
+        If the system refuses, for want of space or otherwise; it ends with the `advice`.
     """
     temporary = target.with_name(f".img2tri-{secrets.token_hex(8)}.tmp")
     try:
@@ -93,7 +93,7 @@ def store(target: Path, data: bytes) -> None:
             shutil.copymode(target, temporary)
         os.replace(temporary, target)
     except OSError as problem:
-        raise FileError(f"{target}: cannot be written: {problem.strerror or problem}") from problem
+        raise FileError(f"{target}: cannot be written: {problem.strerror or problem}{advice}") from problem
     finally:
         # After the last step above there is nothing left to remove.
         with suppress(OSError):
