@@ -11,9 +11,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from img2tri.arrays import Bools, Ints, Points, runs
+from img2tri.arrays import Bools, Ints, Points
 
-MOST_MARKS = 8  # cells to each place: in larger grids what is marked is sorted
+MOST_MARKS, FEW_MARKS = 8, 1 << 14  # cells to each place, and cells in all: larger grids are folded
 
 
 def cells(places: Points, width: float) -> tuple[Ints, int]:
@@ -30,18 +30,18 @@ def cells(places: Points, width: float) -> tuple[Ints, int]:
 
 
 def in_cells_beside(cell: Ints, above: int, chosen: Bools) -> Bools:
-    """Tell which of all places lie in the cell of a chosen one, or in one beside it."""
-    hit, count = cell[chosen], int(cell.max(initial=0)) + above + 2
-    if count > MOST_MARKS * len(cell):
-        # No grid of marks: where places are few and far apart it would be larger than the image.
-        hit = np.unique(hit)
-        return np.isin(cell, np.concatenate([hit + beside for beside in _nine(above)]))
-    own, marks = np.zeros(count, bool), np.zeros(count, bool)
-    own[hit] = True
+    """Tell which of all places lie in the cell of a chosen one, or in one beside it; and of some others, as if they did.
+
+    Where places are few and far apart, a grid of marks would be larger than the image: it is folded, so that cells far apart share one.
+    """
+    count = min(int(cell.max(initial=0)) + above + 2, max(FEW_MARKS, MOST_MARKS * len(cell)))
+    last = (1 << count.bit_length()) - 1
+    own, marks = np.zeros(last + 1, bool), np.zeros(last + 1, bool)
+    own[cell[chosen] & last] = True
     hit = np.flatnonzero(own)
     for beside in _nine(above):
-        marks[hit + beside] = True
-    return np.asarray(marks[cell])
+        marks[(hit + beside) & last] = True
+    return np.asarray(marks[cell & last])
 
 
 def _nine(above: int) -> list[int]:
@@ -49,8 +49,10 @@ def _nine(above: int) -> list[int]:
     return [up + right for up in (-above, 0, above) for right in (-1, 0, 1)]
 
 
-def pairs_beside(own: Ints, cell: Ints, above: int) -> tuple[Ints, Ints]:
+def pairs_beside(own: Ints, cell: Ints, above: int, part: slice = slice(None)) -> tuple[Ints, Ints]:
     """Pair all items that are in one cell or in two beside each other, each pair once; the cells (k,) of the items (k,) rise.
+
+    With `part` only those pairs that are seen from some of the items: all parts together have them all.
 
     Examples
     --------
@@ -58,15 +60,20 @@ def pairs_beside(own: Ints, cell: Ints, above: int) -> tuple[Ints, Ints]:
     (array([7, 7, 8]), array([8, 9, 9]))
     """
     # Each pair is seen from the first of the two: the rest of its own cell and the one on the right, then three in the row above.
-    first = np.concatenate([np.arange(1, len(cell) + 1), cell.searchsorted(cell + (above - 1))])
-    last = cell.searchsorted(np.concatenate([cell + 1, cell + (above + 1)]), side="right")
-    run, place = runs(last - first)
-    return own[run % len(own)], own[first[run] + place]
+    at, here = np.arange(len(cell))[part], cell[part]
+    first = np.concatenate([at + 1, cell.searchsorted(here + (above - 1))])
+    last = cell.searchsorted(np.concatenate([here + 1, here + (above + 1)]), side="right")
+    return _paired(np.tile(own[part], 2), own, first, last)
 
 
 def pairs_across(own: Ints, at: Ints, others: Ints, cell: Ints, above: int) -> tuple[Ints, Ints]:
     """Pair items in the cells `at` with the others in these and beside them, whose cells rise; item by item in each of three rows."""
     rows = np.concatenate([at - above, at, at + above])
-    first = cell.searchsorted(rows - 1)
-    run, place = runs(cell.searchsorted(rows + 1, side="right") - first)
-    return own[run % len(own)], others[first[run] + place]
+    return _paired(np.tile(own, 3), others, cell.searchsorted(rows - 1), cell.searchsorted(rows + 1, side="right"))
+
+
+def _paired(own: Ints, others: Ints, first: Ints, last: Ints) -> tuple[Ints, Ints]:
+    """Pair each item (k,) with those of the others from its first one (k,) to before its last one (k,)."""
+    count = last - first
+    begin = first - (count.cumsum() - count)
+    return own.repeat(count), others[np.arange(int(count.sum())) + begin.repeat(count)]

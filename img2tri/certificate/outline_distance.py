@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from img2tri.arrays import Floats, Ints, Points, as_complex, as_rows, cross, runs
+from img2tri.arrays import Floats, Ints, Points, as_complex, as_rows, blocks, cross, runs
 from img2tri.cell_lists import cells, pairs_across
 from img2tri.errors import MeshError
 from img2tri.shapes.simplify.clearance import to_segment
@@ -28,6 +28,7 @@ SAMPLE_STEP = 0.5  # px between the samples that distances are measured at
 NEARBY = 0.75  # px, the width of cells in which segments are looked for at first
 FIRST_ASKED = 3  # samples looked at around a place at first
 JUST_WITHIN = 1e-6  # px, what is nearer to the tolerance than this is at it
+PLACES_AT_ONCE = 1 << 12  # whose distances are measured at a time
 MOST_SQUARES = 4000  # to a side of the grid in which triangles near pixels are looked for
 
 
@@ -83,12 +84,19 @@ class SegmentSet:
         # Of the samples of a segment one in each cell is enough.
         some = np.flatnonzero((np.diff(cell, prepend=-1) != 0) | (np.diff(self._owner, prepend=-1) != 0))
         some = some[np.argsort(cell[some])]
-        place, owner = pairs_across(np.arange(len(z)), at, self._owner[some], cell[some], above)
+        owner, cell = self._owner[some], cell[some]
         result = np.full(len(z), np.inf)
-        if len(place):
-            # Those of one place stand side by side, in each of three rows of cells.
-            first = np.flatnonzero(np.diff(place, prepend=-1))
-            np.minimum.at(result, place[first], np.minimum.reduceat(to_segment(z[place], self._a[owner], self._b[owner]), first))
+        # Cell by cell, a few at a time: what lies near is in the cache, and the pairs of all would take many times the memory of the mesh.
+        order = np.argsort(at)
+        for block in blocks(len(z), PLACES_AT_ONCE):
+            place, other = pairs_across(order[block], at[order[block]], owner, cell, above)
+            # Those of one place stand side by side, in each of three rows of cells; a segment often comes again in the next cell.
+            new = np.diff(place, prepend=-1) != 0
+            fresh = np.flatnonzero(new | (np.diff(other, prepend=-1) != 0))
+            place, other, first = place[fresh], other[fresh], np.flatnonzero(new[fresh])
+            if len(place):
+                found = to_segment(z[place], self._a[other], self._b[other])
+                np.minimum.at(result, place[first], np.minimum.reduceat(found, first))
         return result
 
 

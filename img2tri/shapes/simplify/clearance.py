@@ -7,13 +7,16 @@ chords is looked at.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
-from img2tri.arrays import Bools, Floats, Ints, Points, cross
+from img2tri.arrays import Bools, Floats, Ints, Points, blocks, cross
 from img2tri.cell_lists import cells, in_cells_beside, pairs_across, pairs_beside
 from img2tri.shapes.simplify.simplification import Simplification
 
 GAP = 0.25  # px, the least distance kept between chords, over their deviations
+CHORDS_AT_ONCE = 1 << 12  # whose pairs are looked at together: what lies near is in the cache
 SHARP_TURN = np.cos(np.radians(50.0))  # chords that meet at less than this angle are too sharp
 
 
@@ -62,20 +65,26 @@ def crowded_chords(s: Simplification, first: Ints, last: Ints, deviation: Floats
 def _within(a: Points, b: Points, reach: Floats, fresh: Bools) -> tuple[Ints, Ints]:
     """Pairs of segments whose boxes, each widened by its `reach`, meet, at least one of them fresh; each pair once."""
     middle, wide, high = (a + b) / 2, np.abs((b - a).real) / 2 + reach, np.abs((b - a).imag) / 2 + reach
-    i, j = _near(middle, np.maximum(wide, high), fresh)
-    away = middle[i] - middle[j]
-    meet = (fresh[i] | fresh[j]) & (np.abs(away.real) <= wide[i] + wide[j]) & (np.abs(away.imag) <= high[i] + high[j])
-    return i[meet], j[meet]
+    x, y, all_fresh, found = middle.real.copy(), middle.imag.copy(), bool(fresh.all()), [(np.zeros(0, np.int64), np.zeros(0, np.int64))]
+    for i, j in _near(middle, np.maximum(wide, high), fresh):
+        if not all_fresh:
+            doubtful = fresh[i] | fresh[j]
+            i, j = i[doubtful], j[doubtful]
+        meet = np.abs(x[i] - x[j]) <= wide[i] + wide[j]
+        i, j = i[meet], j[meet]
+        meet = np.abs(y[i] - y[j]) <= high[i] + high[j]
+        found.append((i[meet], j[meet]))
+    i, j = (np.concatenate(part) for part in zip(*found, strict=True))
+    return i, j
 
 
-def _near(middle: Points, half: Floats, fresh: Bools) -> tuple[Ints, Ints]:
-    """Pairs of squares around their middles that may meet, one of them fresh, each pair once: found in grids of cells.
+def _near(middle: Points, half: Floats, fresh: Bools) -> Iterator[tuple[Ints, Ints]]:
+    """Yield pairs of squares around their middles that may meet, one of them fresh, each pair once: found in grids of cells.
 
     There is a grid for each class of sizes, for pairs whose larger square is of that class; its cells are as wide as the widest pair is
     apart.
     """
     size = np.ceil(np.log2(half) / 2)  # classes of a ratio of 4
-    found = []
     for each in np.unique(size).tolist():
         cell, above = cells(middle, 2 * float(half[size == each].max()))
         chosen = size <= each
@@ -85,11 +94,11 @@ def _near(middle: Points, half: Floats, fresh: Bools) -> tuple[Ints, Ints]:
         order = order[np.argsort(cell[order])]
         large = size[order] == each
         own, smaller = order[large], order[~large]
-        found.append(pairs_beside(own, cell[own], above))
-        if len(smaller):
-            found.append(pairs_across(own, cell[own], smaller, cell[smaller], above))
-    i, j = (np.concatenate(part) for part in zip(*found, strict=True))
-    return i, j
+        at, beside = cell[own], cell[smaller]
+        for some in blocks(len(own), CHORDS_AT_ONCE):
+            yield pairs_beside(own, at, above, some)
+            if len(smaller):
+                yield pairs_across(own[some], at[some], smaller, beside, above)
 
 
 def _distance(a: Points, b: Points, c: Points, d: Points) -> Floats:
