@@ -117,7 +117,7 @@ def unique_edges(triangles: Ints) -> tuple[Ints, Ints]:
     order, lower, higher = sorted_sides(triangles)
     new = np.ones(len(order), bool)
     new[1:] = (lower[1:] != lower[:-1]) | (higher[1:] != higher[:-1])
-    first, sides = np.flatnonzero(new), np.empty(len(order), np.int64)
+    first, sides = new.nonzero()[0], np.empty(len(order), np.int64)
     sides[order] = np.cumsum(new, dtype=lower.dtype) - 1
     edges = np.empty((len(first), 2), np.int64)
     edges[:, 0], edges[:, 1] = lower.take(first), higher.take(first)
@@ -262,7 +262,7 @@ class ChainIndex:
         """(s,) the entries that another one follows in their chain: the first entry of each segment."""
         followed = np.ones(len(self.indices), bool)
         followed[self.last] = False
-        return np.flatnonzero(followed)
+        return followed.nonzero()[0]
 
 
 def label_changes(flat: NDArray[Any], shift: int) -> Ints:
@@ -279,11 +279,11 @@ def label_changes(flat: NDArray[Any], shift: int) -> Ints:
     words, per_word = n * size // 8, 8 // size
     here = np.frombuffer(flat, np.uint64, words)
     there = np.frombuffer(flat, np.uint64, words, offset=shift * size)
-    differ = np.flatnonzero(here != there)
+    differ = (here != there).nonzero()[0]
     # Of these words, which of the values in each; then the last few values, which fill no word.
-    which, of_word = np.divmod(np.flatnonzero((here[differ] ^ there[differ]).view(f"u{size}") != 0), per_word)
+    which, of_word = np.divmod(((here[differ] ^ there[differ]).view(f"u{size}") != 0).nonzero()[0], per_word)
     rest = words * per_word
-    return np.concatenate([differ[which] * per_word + of_word, rest + np.flatnonzero(flat[rest:n] != flat[rest + shift :])])
+    return np.concatenate([differ[which] * per_word + of_word, rest + (flat[rest:n] != flat[rest + shift :]).nonzero()[0]])
 
 
 def neighbour_changes(values: NDArray[Any]) -> tuple[Ints, Ints]:

@@ -38,7 +38,7 @@ def in_cells_beside(cell: Ints, above: int, chosen: Bools) -> Bools:
     last = (1 << count.bit_length()) - 1
     own, marks = np.zeros(last + 1, bool), np.zeros(last + 1, bool)
     own[cell[chosen] & last] = True
-    hit = np.flatnonzero(own)
+    hit = own.nonzero()[0]
     for beside in _nine(above):
         marks[(hit + beside) & last] = True
     return np.asarray(marks[cell & last])

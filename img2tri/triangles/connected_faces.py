@@ -59,11 +59,11 @@ def spread(neighbours: NDArray[np.int32], values: Ints, known: Bools) -> None:
     >>> values.tolist(), known.tolist()
     ([7, 7, 0], [True, True, False])
     """
-    front: NDArray[np.integer[Any]] = np.flatnonzero(known)
+    front: NDArray[np.integer[Any]] = known.nonzero()[0]
     place = np.zeros(len(values), np.int64)
     while len(front):
         beyond, here = neighbours.take(front, axis=0).ravel(), front.repeat(3)
-        at = np.flatnonzero((beyond >= 0) & ~known[beyond])
+        at = ((beyond >= 0) & ~known[beyond]).nonzero()[0]
         front = beyond[at]
         values[front], known[front] = values[here[at]], True
         # Whoever is reached from two sides goes on once.

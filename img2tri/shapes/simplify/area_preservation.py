@@ -23,22 +23,24 @@ LEAST_ROOM = 1e-3  # px, vertices that can move no farther are left out
 SMALL_REGION = 16  # pixels: the area of smaller regions is not looked after
 
 
-def preserve_areas(s: Simplification, *, tolerance: float, whole: bool = False, above: float = 0.0) -> Simplification:
+def preserve_areas(s: Simplification, *, tolerance: float, among: Bools | None = None, above: float = 0.0) -> Simplification:
     """Offset vertices along the normal so that the chords enclose what the outlines enclose, region by region.
 
     Each vertex takes up half of the chord-arc areas beside it; what then is missing of a region, since some vertices cannot move, is
     shared evenly by the others, see `region_pressures`. No vertex ends farther from the outline than the tolerance. Where that leaves a
     region with too much or too little, vertices are added, to be offset the next time.
 
-    With `above`, the relative error that is borne, only that is shared what is missing. `whole` does so too, and adds no vertices: what
-    lies well for its arcs stays so.
+    With `above`, the relative error that is borne, only that is shared what is missing. With `among`, entries (k,), only these are offset
+    to share it, and no vertices are added: what lies well for its arcs stays so.
     """
-    free = NormalOffsets(s, snapped=not whole)
+    free = NormalOffsets(s, snapped=among is None)
     area, width = (part[free.at] for part in areas_beside(s))
-    taken = s if whole or above else replace(s, offset=free.shifted(s.offset, area / width, tolerance))
-    step = _exchange(taken, free, width, tolerance)
+    taken = s if among is not None or above else replace(s, offset=free.shifted(s.offset, area / width, tolerance))
+    step = _exchange(taken, free, width if among is None else width * among[free.at], tolerance)
+    if among is not None:
+        step *= among[free.at]
     result = replace(s, offset=free.shifted(taken.offset, step, tolerance))
-    if whole:
+    if among is not None:
         return result
     areas = pixel_areas(s.dual_edges)
     areas[0] = np.inf
@@ -93,7 +95,7 @@ def _gained_areas(s: Simplification) -> Floats:
 def _middles(s: Simplification, first: Ints, last: Ints, cut: Floats, chosen: Bools) -> Ints:
     """Middle entries of the chords that cut off most, in each of the chosen chains that have one to split."""
     chain = s.chains.chain[first]
-    able = np.flatnonzero(chosen[chain] & (last - first > 1))
+    able = (chosen[chain] & (last - first > 1)).nonzero()[0]
     greatest = np.zeros(len(chosen))
     np.maximum.at(greatest, chain[able], cut[able])
     able = able[cut[able] >= GREAT * greatest[chain[able]]]

@@ -17,6 +17,7 @@ from img2tri.shapes.simplify.simplification import Simplification
 
 GAP = 0.25  # px, the least distance kept between chords, over their deviations
 CHORDS_AT_ONCE = 1 << 12  # whose pairs are looked at together: what lies near is in the cache
+FEW_BOXES = 1 << 16  # pairs of boxes: fewer are all looked at at once
 SHARP_TURN = np.cos(np.radians(50.0))  # chords that meet at less than this angle are too sharp
 
 
@@ -27,14 +28,14 @@ def sharp_chords(s: Simplification, first: Ints, last: Ints, fresh: Bools) -> Bo
     touched[at[first[fresh]]] = touched[at[last[fresh]]] = True
     # All ends of chords at these points, those at the same point one after the other.
     point = at[np.concatenate([first, last])]
-    end = np.flatnonzero(touched[point])
+    end = touched[point].nonzero()[0]
     end = end[np.argsort(point[end], kind="stable")]
     point, chord = point[end], end % n
     heading = (place[last[chord]] - place[first[chord]]) * np.where(end < n, 1, -1)
     length = np.abs(heading)
     sharp = np.zeros(n, bool)
     for step in range(1, len(end)):
-        one = np.flatnonzero(point[step:] == point[:-step])
+        one = (point[step:] == point[:-step]).nonzero()[0]
         if not len(one):
             break
         other = one + step
@@ -52,7 +53,7 @@ def crowded_chords(s: Simplification, first: Ints, last: Ints, deviation: Floats
     apart = (head[i] != head[j]) & (head[i] != tail[j]) & (tail[i] != head[j]) & (tail[i] != tail[j])
     i, j = i[apart], j[apart]
     distance = _distance(a[i], b[i], a[j], b[j])
-    near = np.flatnonzero(distance < GAP + deviation[i] + deviation[j])
+    near = (distance < GAP + deviation[i] + deviation[j]).nonzero()[0]
     i, j, distance = i[near], j[near], distance[near]
     # Along the same chain two chords are only near if the way between them is long for that.
     crowded = np.zeros(len(first), bool)
@@ -64,10 +65,17 @@ def crowded_chords(s: Simplification, first: Ints, last: Ints, deviation: Floats
 
 def _within(a: Points, b: Points, reach: Floats, fresh: Bools) -> tuple[Ints, Ints]:
     """Pairs of segments whose boxes, each widened by its `reach`, meet, at least one of them fresh; each pair once."""
-    middle, wide, high = (a + b) / 2, np.abs((b - a).real) / 2 + reach, np.abs((b - a).imag) / 2 + reach
-    x, y, all_fresh, found = middle.real.copy(), middle.imag.copy(), bool(fresh.all()), [(np.zeros(0, np.int64), np.zeros(0, np.int64))]
+    wide, high = np.abs((b - a).real) / 2 + reach, np.abs((b - a).imag) / 2 + reach
+    middle, own = (a + b) / 2, fresh.nonzero()[0]
+    x, y = middle.real.copy(), middle.imag.copy()
+    if len(own) * len(a) <= FEW_BOXES:
+        left, right, low, top = x - wide, x + wide, y - high, y + high
+        meet = (left[own, None] <= right) & (left <= right[own, None]) & (low[own, None] <= top) & (low <= top[own, None])
+        i, j = (meet & (~fresh | (own[:, None] < np.arange(len(a))))).nonzero()
+        return own[i], j
+    found = [(np.zeros(0, np.int64), np.zeros(0, np.int64))]
     for i, j in _near(middle, np.maximum(wide, high), fresh):
-        if not all_fresh:
+        if len(own) < len(a):
             doubtful = fresh[i] | fresh[j]
             i, j = i[doubtful], j[doubtful]
         meet = np.abs(x[i] - x[j]) <= wide[i] + wide[j]
@@ -90,7 +98,7 @@ def _near(middle: Points, half: Floats, fresh: Bools) -> Iterator[tuple[Ints, In
         chosen = size <= each
         if not fresh.all():
             chosen &= in_cells_beside(cell, above, fresh)
-        order = np.flatnonzero(chosen)
+        order = chosen.nonzero()[0]
         order = order[np.argsort(cell[order])]
         large = size[order] == each
         own, smaller = order[large], order[~large]

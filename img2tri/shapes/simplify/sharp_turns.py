@@ -38,7 +38,7 @@ def sharp_turns(outlines: Outlines) -> Bools:
     >>> side = np.linspace(0, 10, 11)
     >>> points = np.concatenate([np.stack([side, 0 * side], axis=1), np.stack([10.4 + 0 * side, 0.4 + side], axis=1)])
     >>> chain = ChainIndex(np.arange(22), np.array([0, 22]), np.array([False]))
-    >>> np.flatnonzero(sharp_turns(Outlines(points, chain, np.array([1]), np.array([0]), np.array([0, 1])))).tolist()
+    >>> sharp_turns(Outlines(points, chain, np.array([1]), np.array([0]), np.array([0, 1]))).nonzero()[0].tolist()
     [11]
     """
     chains = outlines.chains
@@ -78,7 +78,7 @@ def _crowded(found: Bools, ends: Ints) -> Bools:
     """Tell which entries (k,) have another one of those found, or an end of a chain, near them."""
     marked = found.copy()
     marked[ends] = True
-    at = np.flatnonzero(marked)
+    at = marked.nonzero()[0]
     near = np.diff(at) < TURNS_APART
     crowded = np.zeros(len(found), bool)
     crowded[at[:-1][near]] = crowded[at[1:][near]] = True

@@ -63,7 +63,7 @@ class Simplification:
     @cached_property
     def chords(self) -> tuple[Ints, Ints]:
         """First and last entry of each chord."""
-        at = np.flatnonzero(self.kept)
+        at = self.kept.nonzero()[0]
         # Both ends of every chain are vertices: from one to the next chain there is no chord.
         joined = np.ones(max(len(at) - 1, 0), bool)
         joined[np.searchsorted(at, self.chains.starts[1:-1]) - 1] = False
@@ -72,7 +72,7 @@ class Simplification:
     @property
     def entries(self) -> Ints:
         """(p,) the first entry of each point of the coarse outlines, in the order these have: that of the dense points."""
-        at = np.flatnonzero(self.kept)
+        at = self.kept.nonzero()[0]
         return at[np.unique(self.chains.indices[at], return_index=True)[1]]
 
     @cached_property
@@ -82,7 +82,7 @@ class Simplification:
 
     def coarse(self) -> Outlines:
         """Return the outlines made of the kept vertices only."""
-        o, at, entries = self.outlines, np.flatnonzero(self.kept), self.entries
+        o, at, entries = self.outlines, self.kept.nonzero()[0], self.entries
         index = np.searchsorted(o.chains.indices[entries], o.chains.indices[at])
         chains = ChainIndex(index, np.searchsorted(at, o.chains.starts), o.chains.rings)
         return Outlines(as_rows(self.places[entries]), chains, o.left, o.right, o.labels)
@@ -105,7 +105,7 @@ def space_evenly(
     way = np.cumsum(step * (per_length + np.roll(per_length, 1)) / 2)
     first, last, rings = chains.first, chains.last, chains.rings
     if posts is not None and posts.any():
-        added = np.flatnonzero(posts)
+        added = posts.nonzero()[0]
         first, last = np.sort(np.concatenate([first, added])), np.sort(np.concatenate([last, added]))
         rings = rings[chains.chain[first]] & np.isin(first, chains.first) & np.isin(last, chains.last)
     begin, length = way[first], way[last] - way[first]

@@ -4,7 +4,7 @@ Vertices may slide along an outline without changing its shape. Spread evenly, t
 arm, and to the points inside. So the mesh may move them, parallel to the line between their neighbours, which keeps the area (as
 boundary vertices are moved in mesh smoothing, e.g. Knupp, "Introducing the target-matrix paradigm", 2012, DOI
 10.1007/s00366-011-0230-1). What comes back has to keep the tolerance as any coarse outline does; vertices for which that takes more of
-them than there were go back.
+them than there were slide half as far, or stay.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from img2tri.shapes.simplify.vertex_offsets import NormalOffsets
 
 SLIDE = 0.15  # of the shorter chord beside a vertex: how far it may slide
 STRAIGHT = 35.0  # degrees: vertices at which the outline turns by more stay
-RETURNS = 4  # how often vertices go back one by one; then all do
+RETURNS = 4  # how often vertices go back one by one, at first half of their way; then all do
 
 
 def slide_limits(s: Simplification, *, shortest: float = 0.0, share: float | None = None, snapped: bool = False) -> Floats:
@@ -44,35 +44,37 @@ def slide_limits(s: Simplification, *, shortest: float = 0.0, share: float | Non
 
 def relocate(s: Simplification, points: Floats, *, tolerance: float, keep_area: bool = True) -> Simplification:
     """Put the points (n, 2) of the coarse outline where the mesh wants them, as far as may be; areas are kept if asked for."""
-    entries, places = s.entries, as_complex(points)
-    goes = np.abs(places - s.places[entries]) > SAME_PLACE
-    old, places = entries[goes], places[goes]
-    new = _nearest(s, old, places)
-    # What went back to the middle of its crack edge is not looked at again, see `tolerance`: it stays near its dense point.
-    off = np.where(s.snapped_entries[new], np.abs(places - s.dense[new]), _distance_to_outline(s, new, places))
-    goes = off <= tolerance
-    for _ in range(RETURNS):
-        old, new, places = old[goes], new[goes], places[goes]
-        tried = _relocated(s, old, new, places)
+    old, way = s.entries, as_complex(points) - s.places[s.entries]
+    for attempt in range(RETURNS):
+        goes = np.abs(way) > SAME_PLACE
+        old, way = old[goes], way[goes]
+        places = s.places[old] + way
+        new = _nearest(s, old, places)
+        # What went back to the middle of its crack edge is not looked at again, see `tolerance`: it stays near its dense point.
+        off = np.where(s.snapped_entries[new], np.abs(places - s.dense[new]), _distance_to_outline(s, new, places))
+        goes = off <= tolerance
+        tried = _relocated(s, old[goes], new[goes], places[goes])
         if keep_area:
-            tried = preserve_areas(tried, tolerance=tolerance, whole=True)
+            slid = np.zeros(len(s.kept), bool)
+            slid[new[goes]] = True
+            tried = preserve_areas(tried, tolerance=tolerance, among=slid)
         found = enforce_tolerance(tried, tolerance=tolerance, passed=s)
         failed = (found.kept != tried.kept) | (found.snapped_entries != tried.snapped_entries)
         if not failed.any():
             return found
-        # A chord in which something had to be done takes both its ends back.
+        # Of a chord in which something had to be done both ends go half as far, and then none.
         first, last = tried.chords
         count = np.concatenate([[0], np.cumsum(failed)])
         back = count[last + 1] > count[first]
         ends = np.zeros(len(failed), bool)
         ends[first[back]] = ends[last[back]] = True
-        goes = ~ends[new]
+        way = np.where(goes & ~ends[new], way, 0.5 * way * (attempt == 0))
     return s
 
 
 def _nearest(s: Simplification, old: Ints, places: Points) -> Ints:
     """Entries whose dense points are nearest to where vertices slide; each keeps to its half of the chords beside it."""
-    z, at = s.dense, np.flatnonzero(s.kept)
+    z, at = s.dense, s.kept.nonzero()[0]
     arc = np.concatenate([[0], np.cumsum(np.abs(np.diff(z)))])
     along = z[old + 1] - z[old - 1]
     wanted = arc[old] + ((places - z[old]) * along.conj()).real / np.maximum(np.abs(along), 1e-12)

@@ -101,10 +101,13 @@ class _Loop:
             if not fresh.any():
                 break
             conflicting = crowded_chords(s, first, last, self.deviation[first], fresh) | sharp_chords(s, first, last, fresh)
-            short = np.abs(s.places[last] - s.places[first]) < SHORTEST_CHORD
             self.tested[first] = last
-            divisible, early = last - first > 1, self._snapped_first(first, last)
-            stuck = (conflicting | short) & ~divisible
+            divisible = last - first > 1
+            stuck = conflicting | (np.abs(s.places[last] - s.places[first]) < SHORTEST_CHORD)
+            stuck &= ~divisible
+            if not (conflicting | stuck).any():
+                break
+            early = self._snapped_first(first, last)
             split = conflicting & divisible & ~early.any(axis=0)
             self.s = _split(s, first[split], last[split])
             ends = [end[stuck | (conflicting & snapped)] for end, snapped in zip((first, last), early, strict=True)]
@@ -134,9 +137,11 @@ class _Loop:
                 return
             self.deviation[first], which, at, distance, worst = _measure(s, first, last)
             self.measured[first] = last
+            if not (worst > self.tolerance).any():
+                return
             excess = worst - ENOUGH * self.tolerance
-            if attempt < self.leans and (worst > self.tolerance).any():
-                farthest = np.flatnonzero((distance == worst[which]) & (excess[which] > 0))
+            if attempt < self.leans:
+                farthest = ((distance == worst[which]) & (excess[which] > 0)).nonzero()[0]
                 far = which[farthest]
                 offset = offset_towards_arcs(s, first[far], last[far], at[farthest], excess[far], self.tolerance)
                 if self._move(offset, first[excess > 0]):
@@ -157,13 +162,12 @@ class _Loop:
 
     def _return_to_points(self) -> bool:
         """Let vertices that were moved along their chain go back, where their own point lies too far from the chords they end."""
-        s = self.s
+        s, (first, last) = self.s, self.s.chords
+        if not (np.abs(s.offset[np.concatenate([first, last])]) > self.tolerance).any():
+            return False
         astray = (np.abs(s.offset) > self.tolerance) & ~s.snapped_entries
-        first, last = s.chords
         ends = astray[first] | astray[last]
         first, last = first[ends], last[ends]
-        if not len(first):
-            return False
         place, distance = s.places, np.full(len(s.dense), np.inf)
         for end in (first, last):
             distance[end] = np.minimum(distance[end], to_segment(s.dense[end], place[first], place[last]))
@@ -175,6 +179,8 @@ class _Loop:
     def _change(self, s: Simplification) -> None:
         """Take over a simplification of which vertices were snapped."""
         first, last = s.chords
+        if s is self.s:
+            return
         new = (s.offset != self.s.offset) | (s.snapped_entries & ~self.s.snapped_entries)
         self.s = s
         self._forget(first[_any_between(new, first, last)])
@@ -186,14 +192,13 @@ class _Loop:
 def _measure(s: Simplification, first: Ints, last: Ints) -> tuple[Floats, Ints, Ints, Floats, Floats]:
     """Measure chords: (c,) deviations; of all inner entries of their arcs (i,) chord, entry, distance; (c,) the greatest distance."""
     # Points on the way to the middle of their crack edge are still on it, others may have left it sideways.
-    snapped = s.snapped_entries
-    off = [np.where(snapped[end], 0, np.abs(s.offset[end])) for end in (first, last)]
+    off = [np.where(s.snapped[s.chains.indices[end]], 0, np.abs(s.offset[end])) for end in (first, last)]
     inner = last - first - 1
     which, place = runs(inner)
     at = first[which] + 1 + place
     a, b = s.dense[first] + s.offset[first], s.dense[last] + s.offset[last]
     distance = to_segment(s.dense[at], a[which], b[which])
-    worst, some = np.zeros(len(first)), np.flatnonzero(inner)
+    worst, some = np.zeros(len(first)), inner.nonzero()[0]
     if len(some):
         worst[some] = np.maximum.reduceat(distance, (np.cumsum(inner) - inner)[some])
     return np.maximum(np.maximum(*off), worst), which, at, distance, worst
@@ -211,6 +216,8 @@ def _in_both(s: Simplification, other: Simplification) -> tuple[Ints, Ints]:
 
 def _split(s: Simplification, first: Ints, last: Ints) -> Simplification:
     """Split chords in the middle."""
+    if not len(first):
+        return s
     kept = s.kept.copy()
     kept[(first + last) // 2] = True
     return replace(s, kept=kept)
@@ -218,10 +225,12 @@ def _split(s: Simplification, first: Ints, last: Ints) -> Simplification:
 
 def _snap(s: Simplification, entries: Ints, tolerance: float) -> Simplification:
     """Let points go back to the middles of their crack edges, as far as the tolerance allows."""
+    if not len(entries):
+        return s
     indices = s.chains.indices
     chosen = np.zeros(len(s.snapped), bool)
     chosen[indices[entries]] = True
-    touched = np.flatnonzero((chosen & ~s.pinned)[indices])
+    touched = (chosen & ~s.pinned)[indices].nonzero()[0]
     at = indices[touched]
     way = s.dual_edges.blunt_middle[at] - s.dense[touched]
     whole = np.abs(way) <= tolerance

@@ -55,7 +55,7 @@ class NormalOffsets:
         ahead[first], behind[last] = last, first
         self._begin, self._end = s.chains.ring_ends
         behind[self._begin], ahead[self._end] = behind[self._end], ahead[self._begin]
-        kept = np.flatnonzero(s.kept)
+        kept = s.kept.nonzero()[0]
         point, may = s.chains.indices[kept], np.zeros(len(s.offset), bool)
         may[kept] = (behind[kept] >= 0) & (ahead[kept] >= 0) & (snapped | ~s.snapped[point]) & (s.dual_edges.vector[point] != 0)
         between = may[kept] & may[behind[kept]] & may[ahead[kept]]

@@ -58,7 +58,7 @@ def by_thickness(z: Points, dual_edges: DualEdges, longest: float, elements: flo
     """
     size: Floats = np.full(len(z), longest)
     regions = dual_edges.regions
-    at = np.flatnonzero(np.arange(len(z)) % EVERY == 0)
+    at = (np.arange(len(z)) % EVERY == 0).nonzero()[0]
     at = at[(at > 0) & (at < len(z) - 1)]
     chain = dual_edges.chains.chain
     at = at[(chain[at - 1] == chain[at]) & (chain[at + 1] == chain[at])]

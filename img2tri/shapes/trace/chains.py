@@ -66,7 +66,7 @@ def follow(successor: Ints) -> Sequences:
     n = len(successor)
     if n == 0:
         return Sequences(np.zeros(0, np.int64), np.zeros(1, np.int64), np.zeros(0, bool))
-    item, last, jump = np.arange(n), np.flatnonzero(successor == NODE), successor.copy()
+    item, last, jump = np.arange(n), (successor == NODE).nonzero()[0], successor.copy()
     jump[last] = last
     # One number tells both, and the least of two the better goal: the goal, a last item as a negative number, and the steps to it.
     known = item << STEPS

@@ -162,7 +162,7 @@ def _successors(tail: Ints, head: Ints, on_frame: Bools, shape: tuple[int, int],
     ends = np.concatenate([tail, head])
     order = np.argsort(ends, kind="stable")
     ends = ends[order]
-    first = np.flatnonzero(np.diff(ends, prepend=-1))
+    first = np.diff(ends, prepend=-1).nonzero()[0]
     count = np.diff(first, append=2 * n)
 
     # Two crack edges: one comes in, one goes out, since both part the same two regions.

@@ -88,7 +88,7 @@ class DualEdges:
         twice = np.append(np.diff(passes, axis=1)[:, 0] == 2, np.zeros(len(self.middle) - k, bool))
         # Of the points of one crack edge the last one is beside the corner.
         edge = np.append(self.crossed, np.full(len(self.middle) - k, -1))[at]
-        here = np.flatnonzero(twice[at[:-1]] & (at[1:] < k) & (np.diff(self.chains.chain) == 0) & (np.diff(edge) != 0))
+        here = (twice[at[:-1]] & (at[1:] < k) & (np.diff(self.chains.chain) == 0) & (np.diff(edge) != 0)).nonzero()[0]
         return at[here], at[here + 1]
 
     @cached_property
@@ -148,7 +148,7 @@ class DualEdges:
             heading = z[other] - z[point]
             sharp = np.zeros(len(z), bool)
             for step in (1, 2, 3):  # at most four segments meet
-                one = np.flatnonzero(point[step:] == point[:-step])
+                one = (point[step:] == point[:-step]).nonzero()[0]
                 a, b = heading[one], heading[one + step]
                 narrow = one[(a * b.conj()).real > BLUNT * np.abs(a) * np.abs(b)]
                 sharp[point[narrow]] = sharp[other[narrow]] = sharp[other[narrow + step]] = True
@@ -194,7 +194,7 @@ def lay_out(crack_edges: CrackEdges, frame: Frame) -> DualEdges:
         return as_complex(frame.plane(*np.divmod(numbers, w + 1)))
 
     tail, head = crack_edges.tail[traced.order], crack_edges.head[traced.order]
-    is_open = np.flatnonzero(~traced.closed)
+    is_open = (~traced.closed).nonzero()[0]
     first, last = traced.starts[is_open], traced.starts[is_open + 1] - 1
     nodes = np.unique(np.concatenate([tail[first], head[last]]))
     n = len(tail)
@@ -243,7 +243,7 @@ def cut_chains(dual_edges: DualEdges, crossings: Ints, frame: Frame) -> DualEdge
 
 def pixels_beside(dual_edges: DualEdges) -> tuple[Floats, Ints]:
     """Return the centres (k, 2) of the pixels on both sides of each crack edge inside the image, and their region numbers (k,)."""
-    inner = np.flatnonzero(~dual_edges.crack_edges.on_frame[dual_edges.crossed])  # also where no crossing may slide
+    inner = (~dual_edges.crack_edges.on_frame[dual_edges.crossed]).nonzero()[0]  # also where no crossing may slide
     middle, edge = dual_edges.middle[inner], dual_edges.crossed[inner]
     half = _across(dual_edges.corner_after[inner] - middle, dual_edges.pixel) / 2
     regions = np.concatenate([dual_edges.crack_edges.left[edge], dual_edges.crack_edges.right[edge]])

@@ -51,7 +51,7 @@ def with_turning_points(outlines: Outlines, dual_edges: DualEdges, *, on_frame: 
     size = int(count.sum())
     whose, middle, place = np.empty(size, np.int64), np.empty(size, np.complex128), np.empty(size, np.complex128)
     whose[main], middle[main], place[main] = at, dual_edges.middle[at], z[at]
-    for new, own, other, way in ((first, np.flatnonzero(before), -1, -1.0), (last, np.flatnonzero(after), 1, 1.0)):
+    for new, own, other, way in ((first, before.nonzero()[0], -1, -1.0), (last, after.nonzero()[0], 1, 1.0)):
         point, beside = at[own], at[own + other]
         along: Points = np.asarray(way * half[point] / np.abs(half[point]), np.complex128)
         whose[new], middle[new] = point, dual_edges.middle[point] + way * half[point] - small / 2 * along
@@ -98,7 +98,7 @@ def _renumbered(
     nodes = np.arange(k, len(dual_edges.middle))
     crossing = whose < k
     crossing[entries.last[entries.rings]] = False  # a ring's first point comes again
-    chosen = np.flatnonzero(crossing)
+    chosen = crossing.nonzero()[0]
     number = np.empty(len(whose), np.int64)
     number[chosen] = np.arange(len(chosen))
     number[whose >= k] = len(chosen) + whose[whose >= k] - k

@@ -80,7 +80,7 @@ def triangulate(points: Floats, segments: Ints, left: Ints, right: Ints) -> tupl
     check_pslg(points, segments, left, right)
     triangulation = insert(points, segments)
     triangles, regions = _label(triangulation, len(points), segments, left, right)
-    inside = np.flatnonzero(regions)
+    inside = regions.nonzero()[0]
     return triangles[inside], regions[inside]
 
 
@@ -132,7 +132,7 @@ def ruppert(points: Floats, segments: Ints, left: Ints, right: Ints, min_angle: 
     check_pslg(points, segments, left, right)
     triangulation = insert(points, segments)
     _, regions = _label(triangulation, len(points), segments, left, right)
-    outside = set(np.flatnonzero(regions == 0).tolist())
+    outside = set((regions == 0).nonzero()[0].tolist())
     budget = 20 * len(points) + 10_000 if most is None else most
     by_angle = pythoncdt.RefinementCriterion.SMALLEST_ANGLE
     triangulation.refine_triangles(budget, by_angle, math.radians(min_angle), outside, min_edge)
@@ -140,7 +140,7 @@ def ruppert(points: Floats, segments: Ints, left: Ints, right: Ints, min_angle: 
     vertices = np.stack([corners["x"], corners["y"]], axis=1)
     pieces, whole = _pieces(triangulation, vertices, segments)
     triangles, regions = _label(triangulation, len(vertices), pieces, left[whole], right[whole])
-    inside = np.flatnonzero(regions)
+    inside = regions.nonzero()[0]
     return Refined(vertices, triangles[inside], regions[inside], pieces, whole)
 
 
@@ -154,7 +154,7 @@ def check_pslg(points: Floats, segments: Ints, left: Ints, right: Ints) -> None:
         raise PslgError(f"segments: expected indices of {len(points)} points, found {segments.min()} to {segments.max()}")
     none = (points[segments[:, 0]] == points[segments[:, 1]]).all(axis=1)
     if none.any():
-        raise PslgError("segments: expected two different points each", np.flatnonzero(none))
+        raise PslgError("segments: expected two different points each", none.nonzero()[0])
 
 
 def insert(points: Floats, segments: Ints) -> pythoncdt.Triangulation:
@@ -174,7 +174,7 @@ def _label(triangulation: pythoncdt.Triangulation, n: int, segments: Ints, left:
     table = triangulation.triangles_array(copy=False)
     triangles, neighbours = table["vertices"].astype(np.int64) - SUPER, table["neighbors"].view(np.int32)
     a, b, c = triangles.T
-    outer = np.flatnonzero((a < 0) | (b < 0) | (c < 0))
+    outer = ((a < 0) | (b < 0) | (c < 0)).nonzero()[0]
     edges, owners, votes = _votes(triangles, n, segments, left, right)
     # Triangles joined across edges that are no segments; -1 for the rest.
     joined = neighbours.copy()
@@ -214,7 +214,7 @@ def _votes(triangles: Ints, n: int, segments: Ints, left: Ints, right: Ints) -> 
     on_segments[segments] = True  # a corner of the outermost triangle has a negative index: one of the last, which stay False
     start = triangles.ravel()
     stop = triangles[:, [1, 2, 0]].ravel()
-    edges = np.flatnonzero(on_segments[start] & on_segments[stop])
+    edges = (on_segments[start] & on_segments[stop]).nonzero()[0]
     # One number per directed edge: those of the segments, and those of the segments turned round.
     known = np.concatenate([segments[:, 0] * n + segments[:, 1], segments[:, 1] * n + segments[:, 0]])
     order = np.argsort(known)

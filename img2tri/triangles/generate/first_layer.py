@@ -53,7 +53,7 @@ def _neighbours(points: Points, wanted: Floats) -> tuple[Ints, Ints]:
     top, least = float(wanted.max(initial=0.0)), float(wanted.min(initial=np.inf))
     halvings = max(0, int(np.ceil(np.log2(top / (0.4 * least))))) if top > 0 else 0
     for longest in top / 2.0 ** np.arange(halvings):
-        members = np.flatnonzero((wanted <= longest) & (wanted > SPAN * longest))
+        members = ((wanted <= longest) & (wanted > SPAN * longest)).nonzero()[0]
         if len(members):
             cell, above = cells(points[members], CROWDED * longest)
             order = np.argsort(cell)

@@ -196,7 +196,7 @@ class Core:
         # as seen by the up triangle, and which down triangle is beyond.
         for start, stop, beyond in ((0, 1, -w), (1, w, 0), (w, 0, -1)):
             up, down = self.up[w:], self.down[w + beyond : len(self.down) + beyond]
-            f = np.flatnonzero(up != down) + w
+            f = (up != down).nonzero()[0] + w
             edge = np.stack([f + start, f + stop], axis=1)
             turned = ~self.up[f]
             edge[turned] = edge[turned, ::-1]
@@ -208,7 +208,7 @@ class Core:
         w, done = self.lattice.width, 0
         for block in blocks(len(self.up)):
             for exist, corners in ((self.up, (0, 1, w)), (self.down, (1, w + 1, w))):
-                f = np.flatnonzero(exist[block]) + block.start
+                f = exist[block].nonzero()[0] + block.start
                 rows = slice(done, done + len(f))
                 for k, corner in enumerate(corners):
                     triangles[rows, k] = numbers[f + corner]

@@ -58,9 +58,9 @@ class SizeFunction:
         # Least of length + gradation * distance over all sources, found as the nearest source among those of about equal length.
         for sources, lengths in self._classes:
             least = lengths.min()
-            open_ = np.flatnonzero(wanted > least)
+            open_ = (wanted > least).nonzero()[0]
             distance, nearest = sources.nearest(points[open_], (self.largest - least) / self.gradation)
-            found = np.flatnonzero(nearest < len(lengths))
+            found = (nearest < len(lengths)).nonzero()[0]
             open_, nearest = open_[found], nearest[found]
             wanted[open_] = np.minimum(wanted[open_], lengths[nearest] + self.gradation * distance[found])
         return wanted

@@ -74,7 +74,7 @@ class Pslg:
         if not len(parts) or parts.max() == 1:
             return self, at_points, at_middles
         of, part = runs(parts)
-        new = np.flatnonzero(part > 0)
+        new = (part > 0).nonzero()[0]
         share = (part / parts[of] * shares[of])[new]
         # Measured from the nearer end, in shares of the half on this side.
         head = share < first_share[of[new]]
@@ -87,7 +87,7 @@ class Pslg:
         segments[new, 0] = segments[new - 1, 1] = len(self.points) + np.arange(len(new))
         divided = Pslg(np.concatenate([self.points, points]), segments, self.left[of], self.right[of], self.origin[of])
         at_middles = at_middles[of]
-        changed = np.flatnonzero(parts[of] > 1)
+        changed = (parts[of] > 1).nonzero()[0]
         at_new, at_middles[changed] = np.split(sizes.at(np.concatenate([points, divided.middles[changed]])), [len(points)])
         return divided, np.concatenate([at_points, at_new]), at_middles
 
@@ -106,7 +106,7 @@ class Pslg:
         n, shorter = len(limits), np.minimum(np.abs(self.points - before), np.abs(after - self.points))
         room = within * shorter * stays
         room[:n] = np.where(stays[:n] & (within == 0), 0.0, limits)
-        at = np.flatnonzero(room > 0)
+        at = (room > 0).nonzero()[0]
         along = after[at] - before[at]
         return SlideLines(at, along / np.abs(along), self.points[at], room[at])
 
@@ -115,7 +115,7 @@ class Pslg:
 
         `points` are places for the points, those that the segments end with among the first n.
         """
-        own = np.flatnonzero(self.origin >= 0)
+        own = (self.origin >= 0).nonzero()[0]
         start, stop = self.segments[own].T
         head, tail = own[start < n], own[stop < n]
         ends = np.zeros((2, int(self.origin.max(initial=-1)) + 1), np.int64)

@@ -126,8 +126,8 @@ def raise_sliding(
 ) -> Points:
     """Raise the worst angles by smoothing with large powers in which vertices on outlines slide too, around all angles below `target`.
 
-    What the vertices then are, those on outlines where they may be, is told by `settle`. If the worst angle fell, or no fewer triangles
-    have an angle below the target, all stay.
+    What the vertices then are, those on outlines where they may be, is told by `settle`. Where the worst angle fell by that, or more
+    triangles have an angle below the target, the vertices go back that moved and hang together there through triangles.
     """
     tangents = min_angle_tangents(vertices, triangles)
     least = math.tan(math.radians(target))
@@ -138,9 +138,38 @@ def raise_sliding(
     smoother = _Smoother(triangles[patch], free & inner)
     moved = settle(smoother.smoothed(vertices, tangents[patch], WORST_FIRST, lines.among(inner))[0])
     moved, found = _raised(moved, min_angle_tangents(moved, triangles), triangles, free, target)
-    moved, found[patch] = smoother.smoothed(moved, found[patch], safe=target)
-    better = found.min() >= tangents.min() - 1e-12 and np.count_nonzero(found < least) < np.count_nonzero(poor)
-    return moved if better else vertices
+    moved, _ = smoother.smoothed(moved, found[patch], safe=target)
+    # What is settled may reach farther than the patch.
+    changed = touching(triangles, moved != vertices)
+    before, near = tangents[changed], triangles[changed]
+    after, part = min_angle_tangents(moved, near), _parts(near, moved != vertices)
+    more = np.bincount(part, (after < least).astype(np.float64) - (before < least), len(near)) > 0
+    fell = _least_in(part, after) < _least_in(part, before) - 1e-12
+    back = np.zeros(len(vertices), bool)
+    back[near[(more | fell)[part]]] = True
+    return np.where(back, vertices, moved)
+
+
+def _least_in(part: Ints, values: Floats) -> Floats:
+    """Return the least of the values (m,) in each part, these numbered from 0 to m at most."""
+    least = np.full(len(values), np.inf)
+    np.minimum.at(least, part, values)
+    return least
+
+
+def _parts(triangles: Ints, joining: Bools) -> Ints:
+    """Return the part each triangle (m,) is of, those that hang together through joining vertices: the first triangle of the part."""
+    part = np.arange(len(triangles))
+    for _ in bounded("parts of a mesh", len(triangles) + 1):
+        lowest = np.full(len(joining), len(triangles))
+        np.minimum.at(lowest, triangles, part[:, None])
+        lowest[~joining] = len(triangles)
+        lower = np.minimum(part, lowest[triangles].min(axis=1))
+        lower = lower[lower]
+        if np.array_equal(lower, part):
+            break
+        part = lower
+    return part
 
 
 class _Smoother:
@@ -152,7 +181,7 @@ class _Smoother:
         self._moves, self._weights = VertexSums(triangles, n, -DEFECT.conj()), VertexSums(triangles, n, np.ones(3))
         used = np.zeros(n, bool)
         used[triangles] = True
-        self._where = np.flatnonzero(free & used)
+        self._where = (free & used).nonzero()[0]
 
     def smoothed(
         self,
@@ -227,7 +256,7 @@ def _shortened(before: Points, after: Points, triangles: Ints, tangents: Floats,
     """
     least = np.minimum(tangents, max(math.tan(math.radians(safe)), tangents.min(initial=np.inf))) - 1e-12
     moved, part, found = after.copy(), np.ones(len(before)), min_angle_tangents(after, triangles)
-    worse = np.flatnonzero(found < least)
+    worse = (found < least).nonzero()[0]
     # Each round shortens a move, and each move is shortened four times at most.
     for _ in bounded("smoothing", 4 * len(before) + 2):
         if not len(worse):
@@ -239,7 +268,7 @@ def _shortened(before: Points, after: Points, triangles: Ints, tangents: Floats,
         # Only triangles at these vertices have changed.
         changed = np.zeros(len(before), bool)
         changed[back] = True
-        doubtful = np.flatnonzero(touching(triangles, changed))
+        doubtful = touching(triangles, changed).nonzero()[0]
         found[doubtful] = min_angle_tangents(moved, triangles[doubtful])
         worse = doubtful[found[doubtful] < least[doubtful]]
     return moved, found

@@ -113,12 +113,12 @@ def _patch_constraints(points: Points, inside: Ints, triangles: Ints, codes: Int
     found = np.bincount(edge)
     # Segments with both ends in the patch, and the edges they are.
     place = np.full(len(constraints.points), -1)
-    known = np.flatnonzero(inside < len(constraints.points))
+    known = (inside < len(constraints.points)).nonzero()[0]
     place[inside[known]] = known
     ends = np.sort(place[constraints.segments], axis=1)
     keys, wanted = edges @ (n, 1), ends @ (n, 1)
     at = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
-    segment = np.flatnonzero((ends[:, 0] >= 0) & (keys[at] == wanted))
+    segment = ((ends[:, 0] >= 0) & (keys[at] == wanted)).nonzero()[0]
     at = at[segment]
     # A segment may be split if all its triangles are in the patch.
     meshed = (constraints.left[segment] != 0).astype(np.int64) + (constraints.right[segment] != 0)

@@ -94,7 +94,7 @@ def lay_strip(pslg: Pslg, at_points: Floats, at_middles: Floats, sizes: SizeFunc
             break
         deep = lattice.eroded(deep)
     core = lattice.core(deep)
-    between = np.flatnonzero((codes != 0) & ~core.nodes())
+    between = ((codes != 0) & ~core.nodes()).nonzero()[0]
     edges = core.rim()
     rim, ends = np.unique(edges, return_inverse=True)
     constraints = pslg.joined(lattice.positions(rim), ends.reshape(-1, 2), right=codes[edges[:, 0]].astype(np.int64))
@@ -116,7 +116,7 @@ def _fine(pslg: Pslg, sizes: SizeFunction, lattice: Lattice, codes: Codes) -> tu
         sources = np.zeros(len(codes), bool)
         sources[lattice.near(sizes.sources, np.full(len(sizes.sources), lattice.pitch))] = True
         asked &= lattice.dilated(sources, 1 + int(reach(sizes) / lattice.height))
-    return finer(lattice, np.flatnonzero(asked), sizes)
+    return finer(lattice, asked.nonzero()[0], sizes)
 
 
 def _inside(pslg: Pslg, points: Points) -> Bools:
@@ -199,7 +199,7 @@ def with_core(strip: Strip, mesh: RegionMesh) -> RegionMesh:
     numbers[strip.rim] = np.arange(fixed - len(strip.rim), fixed)
     vertices = np.zeros(given + int(np.count_nonzero(inner)), np.complex128)
     vertices[:given] = mesh.vertices[used]
-    strip.core.lattice.positions(np.flatnonzero(inner), out=vertices[given:])
+    strip.core.lattice.positions(inner.nonzero()[0], out=vertices[given:])
     triangles = np.zeros((m + len(strip.core), 3), np.int64)
     codes = np.zeros(len(triangles), np.int64)
     triangles[:m], codes[:m] = (np.cumsum(used) - 1)[mesh.triangles], mesh.codes

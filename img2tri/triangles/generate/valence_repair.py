@@ -96,11 +96,11 @@ def _flippable(triangles: Ints, valence: Ints) -> tuple[Ints, Ints]:
     A corner is counted through the rows of triangles; the edge opposite it runs from the next one to that after.
     """
     a, b = (np.roll(valence[triangles], -k, axis=1).ravel() for k in (1, 2))
-    corner = np.flatnonzero(a + b > 12)
+    corner = (a + b > 12).nonzero()[0]
     a, b = (triangles.ravel()[corner - corner % 3 + (corner + k) % 3] for k in (1, 2))
     key = np.minimum(a, b) * len(valence) + np.maximum(a, b)
     order = np.argsort(key, kind="stable")
-    twice = np.flatnonzero(np.diff(key[order]) == 0)
+    twice = (np.diff(key[order]) == 0).nonzero()[0]
     return corner[order[twice]], corner[order[twice + 1]]
 
 
@@ -121,7 +121,7 @@ def _neighbourhoods(vertices: Points, triangles: Ints, chosen: Bools) -> tuple[I
     disputed[centre[(owner[neighbour] != centre) | (owner[centre] != centre)]] = True
     alone = ~disputed[centre]
     centre, neighbour = centre[alone], neighbour[alone]
-    return centre, neighbour, np.flatnonzero(np.diff(centre, prepend=-1))
+    return centre, neighbour, np.diff(centre, prepend=-1).nonzero()[0]
 
 
 def _split(vertices: Points, extra: Floats, centre: Ints, neighbour: Ints, start: Ints) -> Points:
@@ -133,7 +133,7 @@ def _split(vertices: Points, extra: Floats, centre: Ints, neighbour: Ints, start
     around = neighbour[start[of] + place]
     # The cheapest pair of each centre comes first in this order; then count the places from there.
     order = np.lexsort((extra[around] + extra[opposite], of))
-    begin = place[order][np.flatnonzero(np.diff(of, prepend=-1))]
+    begin = place[order][np.diff(of, prepend=-1).nonzero()[0]]
     place = (place - begin[of]) % count[of]
     points = []
     for side in (place <= half[of], (place >= half[of]) | (place == 0)):

@@ -176,6 +176,11 @@ def test_vertices_that_would_leave_a_chord_too_long_for_the_tolerance_go_back():
     found = relocate(d, wanted, tolerance=0.5, keep_area=False).coarse().points
     assert not np.allclose(found, wanted, rtol=0, atol=1e-3)
     check(d, found, MAPS["disc"], 0.5)
+    # Some are halfway, others where they were.
+    begin = d.coarse().points
+    went = np.hypot(*(found - begin).T)[share * slide_limits(d) != 0] / np.hypot(*(wanted - begin).T)[share * slide_limits(d) != 0]
+    assert np.isclose(went, 0.5, rtol=0, atol=1e-6).any()
+    assert np.isclose(went[:, None], [0, 0.5, 1], rtol=0, atol=1e-6).any(axis=1).all()
 
 
 @pytest.mark.parametrize("name", ["disc", "ring", "blob", "polycrystal"])

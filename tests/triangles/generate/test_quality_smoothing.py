@@ -151,6 +151,24 @@ def test_poor_angles_become_fewer_where_vertices_slide_and_all_stay_where_they_w
     assert np.array_equal(raise_sliding(z, triangles, free, lines, lambda wanted: wanted, before.min() - 1), z)
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_where_a_slide_spoils_triangles_only_what_hangs_together_with_them_goes_back(seed):
+    meshes = [with_lines(seed, 0.03), with_lines(seed, 0.03)]
+    n, apart = len(meshes[0][0]), 100
+    z = np.concatenate([smooth(m[0], m[1], m[2], SMOOTH) + k * apart for k, m in enumerate(meshes)])
+    triangles, free = np.concatenate([meshes[0][1], meshes[1][1] + n]), np.concatenate([m[2] for m in meshes])
+    one, other = meshes[0][3], meshes[1][3]
+    joined = [(one.at, other.at + n), (one.along, other.along), (one.start, other.start + apart), (one.limits, other.limits)]
+    lines = SlideLines(*(np.concatenate(part) for part in joined))
+    target = np.percentile(smallest_angles(z, triangles), 5)
+    spoilt = ~free & (np.arange(2 * n) >= n)
+    slid = raise_sliding(z, triangles, free, lines, lambda wanted: np.where(spoilt, 0.7 * (z - apart) + apart, wanted), target)
+    assert np.array_equal(slid[n:], z[n:])
+    before, after = (smallest_angles(vertices, triangles)[: len(meshes[0][1])] for vertices in (z, slid))
+    assert (after < target).sum() < (before < target).sum()
+    assert after.min() >= before.min() - 1e-9
+
+
 def wheel(spokes):
     turn = np.exp(2j * np.pi * np.arange(spokes) / spokes)
     i = np.arange(spokes)
