@@ -143,9 +143,11 @@ def _around(corners: Points, places: Points) -> tuple[Ints, Ints]:
         cell, above = cells(np.concatenate([middle[own], places]), float(reach[own].max()))
         at, cell = np.split(cell, [len(own)])
         order = np.argsort(cell)
-        triangle, place = pairs_across(own, at, order, cell[order], above)
-        close = np.abs(places[place] - middle[triangle]) <= reach[triangle]
-        found.append((triangle[close], place[close]))
+        cell = cell[order]
+        for some in blocks(len(own), PLACES_AT_ONCE):
+            triangle, place = pairs_across(own[some], at[some], order, cell, above)
+            close = np.abs(places[place] - middle[triangle]) <= reach[triangle]
+            found.append((triangle[close], place[close]))
     triangle, place = (np.concatenate(part) for part in zip(*found, strict=True))
     return triangle, place
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from img2tri.arrays import Floats, Ints, cross
-from img2tri.shapes.place.constrained_smoothing import AT_BOUND, BoundedChains, rounding_of_areas, swept_areas
+from img2tri.arrays import Floats, Ints
+from img2tri.shapes.place.constrained_smoothing import AT_BOUND, BoundedChains, rounding_of_areas, swept_areas, swept_widths
 from img2tri.shapes.region_pressures import region_pressures
 
 SAME_AREA = 1e-12  # of the area of a region: what it may lack
@@ -31,31 +31,37 @@ def exchange_areas(s: BoundedChains, shift: Floats, wanted: Floats, left: Ints, 
     areas
         (r,) the area of each region.
     """
-    at, chain, size = s.chains.indices, s.chains.chain, len(areas)
-    begin, end = s.chains.ring_ends
-    enough = np.maximum(SAME_AREA * np.maximum(areas, 1), rounding_of_areas(s))
+    size, enough = len(areas), np.maximum(SAME_AREA * np.maximum(areas, 1), rounding_of_areas(s))
     for _ in range(EXCHANGES):
-        moved = s.points + shift * s.axis
-        missing = wanted - swept_areas(moved, s)
+        missing = wanted - swept_areas(s.points + shift * s.axis, s)
         lacking = (np.bincount(left, missing, size) - np.bincount(right, missing, size)).astype(np.float64)
         lacking[0] = 0
         if (np.abs(lacking) <= enough).all():
             break
-        z = moved[at]
-        ahead, behind = np.roll(z, -1), np.roll(z, 1)
-        behind[begin], ahead[end] = z[end - 1], z[begin + 1]
-        width = cross(s.axis[at], ahead - behind) / 2
-        width[end] = 0
-        way = np.sign(width)
         step = np.zeros(len(areas))
         for _ in range(2):
-            by = (step[left] - step[right])[chain] * way
-            room = np.where(by > 0, s.high[at] - shift[at], np.where(by < 0, shift[at] - s.low[at], (s.high - s.low)[at]))
-            free = np.bincount(chain, np.abs(width) * (room > AT_BOUND), len(left)).astype(np.float64)
+            by = step[left] - step[right]
+            free = np.concatenate([_free_width(part, shift[at], by[chains]) for chains, at, part in s.batches()])
             step = region_pressures(left, right, free, lacking)
-        by = np.clip((step[left] - step[right])[chain] * way, -MOST_EXCHANGED, MOST_EXCHANGED)
-        by[s.axis[at] == 0] = 0
-        by[end] = by[begin]
-        shift = shift.copy()
-        shift[at] = np.clip(shift[at] + by, s.low[at], s.high[at])
+        by, before, shift = step[left] - step[right], shift, shift.copy()
+        for chains, at, part in s.batches():
+            shift[at] = _shifted(part, before[at], by[chains])
     return shift
+
+
+def _free_width(s: BoundedChains, shift: Floats, by: Floats) -> Floats:
+    """Return the width (c,) of the points of each chain that may go on when it is shifted by so much (c,); to both sides where by 0."""
+    width = swept_widths(s.points + shift * s.axis, s)
+    way = by[s.chains.chain] * np.sign(width)
+    room = np.where(way > 0, s.high - shift, np.where(way < 0, shift - s.low, s.high - s.low))
+    return np.asarray(np.bincount(s.chains.chain, np.abs(width) * (room > AT_BOUND), len(by)), np.float64)
+
+
+def _shifted(s: BoundedChains, shift: Floats, by: Floats) -> Floats:
+    """Shift each chain by so much (c,), as far as the bounds of its points go."""
+    width = swept_widths(s.points + shift * s.axis, s)
+    step = np.clip(by[s.chains.chain] * np.sign(width), -MOST_EXCHANGED, MOST_EXCHANGED)
+    step[s.axis == 0] = 0
+    begin, end = s.chains.ring_ends
+    step[end] = step[begin]
+    return np.clip(shift + step, s.low, s.high)

@@ -20,9 +20,12 @@ taken back are as good, and take five times as long. More scales than three chan
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from img2tri.arrays import Bools, ChainIndex, Floats, Ints, Points, cross
 from img2tri.shapes.place.along_the_arc import fade_out
@@ -85,6 +88,23 @@ class BoundedChains:
         """(c,) the chains with points that may slide; those along the frame have none but at their ends."""
         return self.slides[self.chains.indices[self.chains.first + 1]]
 
+    def batches(self) -> Iterator[tuple[slice, Ints, BoundedChains]]:
+        """Yield which chains, the points (k,) of their entries, and these chains alone, where each of the entries is a point of its own."""
+        for which, at, chains in _batches(self.chains):
+            yield which, at, BoundedChains(self.points[at], self.axis[at], self.low[at], self.high[at], self.slack[at], chains)
+
+
+def _batches(chains: ChainIndex) -> Iterator[tuple[slice, Ints, ChainIndex]]:
+    """Yield some chains at a time, the points (k,) of their entries, and an index of the chains by these."""
+    batch = np.cumsum(np.diff(chains.starts)) // BATCH
+    bounds = np.concatenate([[0], np.flatnonzero(np.diff(batch)) + 1, [len(batch)]]).tolist()
+    for first, last in pairwise(bounds):
+        starts = chains.starts[first : last + 1]
+        some = ChainIndex(np.arange(starts[-1] - starts[0]), starts - starts[0], chains.rings[first:last])
+        begin, end = some.ring_ends
+        some.indices[end] = begin
+        yield slice(first, last), chains.indices[starts[0] : starts[-1]], some
+
 
 @dataclass(frozen=True, eq=False)
 class ChainEnds:
@@ -105,28 +125,37 @@ class ChainEnds:
 
 def widest_fitting_spline(s: BoundedChains) -> tuple[Floats, ChainEnds]:
     """Return the shift of each point (n,) along its axis onto the smoothing spline of the widest scale that fits, and where chains lead."""
-    shift, level, ends = np.zeros((len(NARROW + WIDE) + 1, len(s.points))), np.zeros(len(s.points), np.int64), _unsmoothed_ends(s)
+    result, ends = np.zeros(len(s.points)), _unsmoothed_ends(s)
+    for chains, at, part in s.batches():
+        own_ends = ChainEnds(ends.place[chains], ends.direction[chains], ends.scale[chains])
+        shift = _fitted(part, own_ends)
+        # Those along the frame have but the nodes in common with those that move.
+        moved = part.movable[part.chains.chain]
+        result[at[moved]] = shift[moved]
+    return result, ends
+
+
+def _fitted(s: BoundedChains, ends: ChainEnds) -> Floats:
+    """Return the shift (n,) of each point of a batch of chains; write where chains lead."""
+    shift, level = np.zeros((len(NARROW + WIDE) + 1, len(s.points))), np.zeros(len(s.points), np.int8)
     size, rings = np.diff(s.chains.starts), s.chains.rings
-    able = [
+    narrow, wide = (
         s.movable & (size > np.where(rings, smallest, shortest))
         for smallest, shortest in ((SMALLEST_NARROW, SHORTEST_NARROW), (SMALLEST_WIDE, SHORTEST_WIDE))
-    ]
-    batch = np.cumsum(size) // BATCH
-    for number in np.unique(batch).tolist():
-        narrow, wide = (chosen & (batch == number) for chosen in able)
-        if not narrow.any():
-            continue
-        # Where both groups of scales are for the same chains, these are laid out once, with room for the wider one.
-        same = np.array_equal(narrow, wide)
-        laid = _LaidOut(s, narrow, (WIDE if same else NARROW)[-1])
-        for k, scale in enumerate(NARROW, 1):
-            laid.fit(k, scale, laid.narrow, shift[k], level, ends)
-        if wide.any():
-            laid = laid if same else _LaidOut(s, wide, WIDE[-1])
-            spline = CurvatureSpline(laid.narrow, BASE)
-            for k, scale in enumerate(WIDE, len(NARROW) + 1):
-                laid.fit(k, scale, spline, shift[k], level, ends)
-    return _blend(shift, level, s), ends
+    )
+    if not narrow.any():
+        return np.zeros(len(s.points))
+    # Where both groups of scales are for the same chains, these are laid out once, with room for the wider one.
+    same = np.array_equal(narrow, wide)
+    laid = _LaidOut(s, narrow, (WIDE if same else NARROW)[-1])
+    for k, scale in enumerate(NARROW, 1):
+        laid.fit(k, scale, laid.narrow, shift[k], level, ends)
+    if wide.any():
+        laid = laid if same else _LaidOut(s, wide, WIDE[-1])
+        spline = CurvatureSpline(laid.narrow, BASE)
+        for k, scale in enumerate(WIDE, len(NARROW) + 1):
+            laid.fit(k, scale, spline, shift[k], level, ends)
+    return _blend(shift, level, s)
 
 
 class _LaidOut:
@@ -146,7 +175,7 @@ class _LaidOut:
         # Where on the line the two ends of each open chain are.
         self.node, self.opened = np.flatnonzero(line.node).reshape(-1, 2), which[~s.chains.rings[which]]
 
-    def fit(self, k: int, scale: float, spline: Spline, shift: Floats, level: Ints, ends: ChainEnds) -> None:
+    def fit(self, k: int, scale: float, spline: Spline, shift: Floats, level: NDArray[np.int8], ends: ChainEnds) -> None:
         """Slide to the spline of one scale: write shifts (n,), k to the level (n,) of points where it fits, and where chains end."""
         line, axis, low, high = self.line, self.axis, self.low, self.high
         off, direction = spline.smoothed(scale)
@@ -182,14 +211,15 @@ def _bend(scale: float) -> float:
 
 def _unsmoothed_ends(s: BoundedChains) -> ChainEnds:
     """Tell where chains lead as they are: from the crossing beside each node on, as the next point does."""
-    chains, z = s.chains, s.points[s.chains.indices]
-    beside = np.stack([z[chains.first + 1], z[chains.last - 1]], axis=1)
-    direction = np.stack([z[chains.first + 2] - beside[:, 0], beside[:, 1] - z[chains.last - 2]], axis=1)
+    at, first, last = s.chains.indices, s.chains.first, s.chains.last
+    beside = s.points[at[np.stack([first + 1, last - 1], axis=1)]]
+    next_one, one_before = s.points[at[first + 2]], s.points[at[last - 2]]
+    direction = np.stack([next_one - beside[:, 0], beside[:, 1] - one_before], axis=1)
     unit = np.where(direction == 0, 1, direction) / np.maximum(np.abs(direction), 1e-12)
     return ChainEnds(beside, np.asarray(unit, np.complex128), np.zeros(beside.shape))
 
 
-def _blend(shift: Floats, level: Ints, s: BoundedChains) -> Floats:
+def _blend(shift: Floats, level: NDArray[np.int8], s: BoundedChains) -> Floats:
     """Pick each point's own scale, with a soft transition where neighbours took different ones."""
     if not level.any():
         return np.zeros(shift.shape[1])
@@ -203,35 +233,32 @@ def _blend(shift: Floats, level: Ints, s: BoundedChains) -> Floats:
     for k in range(1, len(shift)):
         share = np.convolve((own_level == k).astype(np.float64), kernel, "same")
         result[at] += share[line.own] * shift[k, at]
+    begin, end = s.chains.ring_ends
+    result[end] = result[begin]
     return np.clip(result, s.low, s.high)
 
 
 def restore_swept_areas(s: BoundedChains, shift: Floats, wanted: Floats) -> Floats:
     """Shift each chain sideways until it sweeps the `wanted` area (c,), seen from the origin; return the new shifts."""
-    at, chain = s.chains.indices, s.chains.chain
-    ring_start, ring_end = s.chains.ring_ends
-    # All by entries; the last one of a ring follows its first.
-    points, axis, low, high, t = s.points[at], s.axis[at], s.low[at], s.high[at], shift[at]
-    rounding = rounding_of_areas(s)
+    rounding, missing, step = rounding_of_areas(s), np.empty(len(wanted)), np.empty(len(wanted))
     for _ in range(AREA_ROUNDS):
-        z = points + t * axis
-        ahead, behind = np.roll(z, -1), np.roll(z, 1)
-        behind[ring_start], ahead[ring_end] = z[ring_end - 1], z[ring_start + 1]
-        # A step dt along the axis sweeps the area dt * axis x (ahead - behind) / 2.
-        width = cross(axis, ahead - behind) / 2
-        missing = wanted - _swept(z, s)
-        # A point at one of its bounds may still go back.
-        free = np.where(missing[chain] * width > 0, t < high - AT_BOUND, low + AT_BOUND < t)
-        free[ring_end] = False
-        gain = np.bincount(chain, np.abs(width) * free, len(wanted))
-        step = np.divide(missing, gain, out=np.zeros_like(gain), where=gain > 0.1)
+        moved = shift.copy()
+        for chains, at, part in s.batches():
+            (begin, end), chain, t = part.chains.ring_ends, part.chains.chain, shift[at]
+            z = part.points + t * part.axis
+            width = swept_widths(z, part)
+            missing[chains] = wanted[chains] - _swept(z, part.chains)
+            # A point at one of its bounds may still go back.
+            free = np.where(missing[chains][chain] * width > 0, t < part.high - AT_BOUND, part.low + AT_BOUND < t)
+            gain = np.bincount(chain, np.abs(width) * free, len(part.chains.rings))
+            step[chains] = np.divide(missing[chains], gain, out=np.zeros_like(gain), where=gain > 0.1)
+            t = np.clip(t + np.clip(step[chains], -0.25, 0.25)[chain] * np.sign(width) * free, part.low, part.high)
+            t[end] = t[begin]
+            moved[at] = t
         if np.abs(step).max(initial=0) < NO_STEP or (np.abs(missing) <= rounding).all():
             break
-        t = np.clip(t + np.clip(step, -0.25, 0.25)[chain] * np.sign(width) * free, low, high)
-        t[ring_end] = t[ring_start]
-    result = shift.copy()
-    result[at] = t
-    return result
+        shift = moved
+    return shift
 
 
 def rounding_of_areas(s: BoundedChains) -> float:
@@ -241,12 +268,22 @@ def rounding_of_areas(s: BoundedChains) -> float:
 
 def swept_areas(z: Points, s: BoundedChains) -> Floats:
     """Area (c,) each chain sweeps as seen from the origin, its points being at these places (n,)."""
-    return _swept(z[s.chains.indices], s)
+    return np.concatenate([np.zeros(0), *(_swept(z[at], chains) for _, at, chains in _batches(s.chains))])
 
 
-def _swept(p: Points, s: BoundedChains) -> Floats:
+def _swept(p: Points, chains: ChainIndex) -> Floats:
     """Area (c,) each chain sweeps, its entries being at these places (k,)."""
     area = np.zeros(len(p))
     area[:-1] = cross(p[:-1], p[1:]) / 2
-    area[s.chains.last] = 0
-    return np.asarray(np.bincount(s.chains.chain, area, len(s.chains.rings)), np.float64)
+    area[chains.last] = 0
+    return np.asarray(np.bincount(chains.chain, area, len(chains.rings)), np.float64)
+
+
+def swept_widths(z: Points, s: BoundedChains) -> Floats:
+    """Width (k,) of each entry of a batch, the points being at these places: a step dt along its axis sweeps the area dt width."""
+    ahead, behind = np.roll(z, -1), np.roll(z, 1)
+    begin, end = s.chains.ring_ends
+    behind[begin], ahead[end] = z[end - 1], z[begin + 1]  # the last entry of a ring follows its first
+    width = cross(s.axis, ahead - behind) / 2
+    width[end] = 0
+    return width

@@ -52,32 +52,33 @@ def meeting_places(s: BoundedChains, ends: ChainEnds, movable: Bools, bounds: Po
     points : (n,) complex
         Those of the chains, movable nodes at their new places.
     """
-    chains, n = s.chains, len(s.points)
-    first, last = chains.ends
-    node = np.concatenate([first, last])[np.tile(~chains.rings, 2)]
+    chains, first, last = s.chains, *s.chains.ends
+    ending = np.tile(~chains.rings, 2)
+    nodes, node = np.unique(np.concatenate([first, last])[ending], return_inverse=True)
+    n, points, bounds = len(nodes), s.points[nodes], bounds[nodes]
     known = np.minimum(ends.scale, np.diff(chains.starts)[:, None] / 3)  # a short chain tells no more than its length
     place, normal, scale = (part.T[:, ~chains.rings].ravel() for part in (ends.place, 1j * ends.direction, known))
     weight = np.maximum(scale, UNSURE) ** 2
-    away = weight * ((place - s.points[node]) * normal.conj()).real
+    away = weight * ((place - points[node]) * normal.conj()).real
+
+    def sums(values: Floats) -> Floats:
+        return np.asarray(np.bincount(node, values, n), np.float64)
 
     # Where short chains say little, a node lies amid the crossings beside it.
-    beside = np.concatenate([chains.indices[chains.first + 1], chains.indices[chains.last - 1]])[np.tile(~chains.rings, 2)]
-    meeting = np.maximum(np.bincount(node, minlength=n), 1)
-    amid = np.bincount(node, (s.points[beside] - s.points[node]).real, n) + 1j * np.bincount(
-        node, (s.points[beside] - s.points[node]).imag, n
-    )
-    amid /= meeting
+    beside = s.points[np.concatenate([chains.indices[chains.first + 1], chains.indices[chains.last - 1]])[ending]] - points[node]
+    amid = (sums(beside.real) + 1j * sums(beside.imag)) / np.bincount(node, minlength=n)
 
     # The normal equations of each node, two by two.
-    total = np.bincount(node, weight, n)
-    xx, xy, yy = (np.bincount(node, weight * part, n) for part in (normal.real**2, normal.real * normal.imag, normal.imag**2))
-    x, y = (np.bincount(node, away * part, n) for part in (normal.real, normal.imag))
-    held = AMID + RIDGE * total
+    xx, xy, yy = (sums(weight * part) for part in (normal.real**2, normal.real * normal.imag, normal.imag**2))
+    x, y = (sums(away * part) for part in (normal.real, normal.imag))
+    held = AMID + RIDGE * sums(weight)
     xx, yy, x, y = xx + held, yy + held, x + held * amid.real, y + held * amid.imag
-    determinant = np.where(total > 0, xx * yy - xy * xy, 1.0)
+    determinant = xx * yy - xy * xy
     off_x, off_y = (yy * x - xy * y) / determinant, (xx * y - xy * x) / determinant
     off = np.clip(off_x, -bounds.real, bounds.real) + 1j * np.clip(off_y, -bounds.imag, bounds.imag)
-    return np.where(movable, s.points + off, s.points)
+    result = s.points.copy()
+    result[nodes] = np.where(movable[nodes], points + off, points)
+    return result
 
 
 def bend_to_nodes(s: BoundedChains, shift: Floats, ends: ChainEnds, nodes: Bools) -> Floats:

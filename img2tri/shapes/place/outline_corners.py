@@ -40,17 +40,27 @@ def find_corners(s: BoundedChains, corners_after: Points, bounds: complex) -> tu
     s
         The crossings in their chains, where they lie as far as is known.
     corners_after
-        (n,) the corner of pixels that follows each crossing.
+        (k,) the corner of pixels that follows each crossing.
     bounds
         How far a corner of the outline may lie from that, to the right plus i times up.
 
     Returns
     -------
-    crossings : (k,) int64
+    crossings : (m,) int64
         The crossing before each corner.
     places : (k,)
         Where the corners are.
     """
+    found = [(np.zeros(0, np.int64), np.zeros(0, np.complex128))]
+    for _, points, part in s.batches():
+        crossings, places = _corners(part, corners_after[np.minimum(points, len(corners_after) - 1)], bounds)  # nodes have none
+        found.append((points[crossings], places))
+    crossings, places = (np.concatenate(part) for part in zip(*found, strict=True))
+    return crossings, places
+
+
+def _corners(s: BoundedChains, corners_after: Points, bounds: complex) -> tuple[Ints, Points]:
+    """Find the corners of the outlines of a batch."""
     chosen = np.diff(s.chains.starts) > 2 * LENGTHS[0]
     if not chosen.any():
         return np.zeros(0, np.int64), np.zeros(0, np.complex128)

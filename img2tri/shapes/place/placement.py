@@ -20,8 +20,8 @@ from img2tri.shapes.place.known_crossings import OutlineLevel, known_crossings
 from img2tri.shapes.place.node_placement import bend_to_nodes, meeting_places, open_wedges
 from img2tri.shapes.place.outline_corners import find_corners
 from img2tri.shapes.place.straight_chains import straightened
-from img2tri.shapes.trace.crack_edges import CrackEdges
-from img2tri.shapes.trace.dual_edges import BOUND, DualEdges, cut_chains, lay_out, pixel_areas
+from img2tri.shapes.trace.crack_edges import CrackEdges, cut_chains
+from img2tri.shapes.trace.dual_edges import BOUND, DualEdges, lay_out, pixel_areas
 from img2tri.types import ColourMix, Frame, Outlines
 
 MIXED_CROSSINGS = 2  # crossings to either side of a corner whose pixels may be mixed of more than two sides
@@ -54,18 +54,16 @@ def place_outlines(
     if not len(dual_edges.crossed):
         return dual_edges.outlines(dual_edges.middle), dual_edges
     shift, slack = known_crossings(dual_edges, frame, gray, level)
+    at, sharp = np.zeros(0, np.int64), np.zeros(0, np.complex128)
     if corners:
-        bends, sharp = find_corners(
-            _bounded(dual_edges, dual_edges.middle, shift, slack), dual_edges.corner_after, BOUND * dual_edges.pixel
-        )
-        at = crack_edges.head[dual_edges.crossed[bends]]
-        once = np.diff(np.searchsorted(np.sort(crack_edges.tail), np.stack([at, at + 1])), axis=0)[0] == 1
-        bends, sharp, at = bends[once], sharp[once], at[once]
-    if corners and len(bends):
-        dual_edges = cut_chains(dual_edges, bends, frame)
+        bends, at, sharp = _corners(dual_edges, shift, slack)
+    if len(at):
+        crack_edges = cut_chains(crack_edges, dual_edges.crossed[bends])
+        del dual_edges, shift, slack  # outlines are the largest that there is: not to have them twice
+        dual_edges = lay_out(crack_edges, frame)
         shift, slack = known_crossings(dual_edges, frame, gray, level)
     points, movable = dual_edges.middle.copy(), dual_edges.bounds != 0
-    if corners:
+    if len(at):
         node = len(dual_edges.crossed) + np.searchsorted(dual_edges.node_corner, at)
         points[node], movable[node] = sharp, False
         slack = _unsure_beside(node, dual_edges, slack)
@@ -113,6 +111,14 @@ def _opened_stretched(points: Points, dual_edges: DualEdges) -> Points:
     for free in (opened, replace(s, points=opened.points)):
         shift = exchange_areas(free, shift, wanted, *dual_edges.regions, pixel_areas(dual_edges))
     return opened.points + shift * vector
+
+
+def _corners(dual_edges: DualEdges, shift: Floats, slack: Floats) -> tuple[Ints, Ints, Points]:
+    """Find corners where just one outline passes: the crossings before them, the corners of pixels these lead to, and their places."""
+    bends, sharp = find_corners(_bounded(dual_edges, dual_edges.middle, shift, slack), dual_edges.corner_after, BOUND * dual_edges.pixel)
+    at, tails = dual_edges.crack_edges.head[dual_edges.crossed[bends]], np.sort(dual_edges.crack_edges.tail)
+    once = np.diff(np.searchsorted(tails, np.stack([at, at + 1])), axis=0)[0] == 1
+    return bends[once], at[once], sharp[once]
 
 
 def _bounded(dual_edges: DualEdges, points: Points, shift: Floats, slack: Floats) -> BoundedChains:
@@ -170,7 +176,7 @@ def place_on_pixel_sides(crack_edges: CrackEdges, frame: Frame) -> tuple[Outline
     turns = np.abs(cross(along[one], along[other])) > 0
     passes = np.searchsorted(np.sort(crack_edges.tail), crack_edges.head[dual_edges.crossed[one]][:, None] + [0, 1])
     bends = one[turns & (np.diff(passes, axis=1)[:, 0] == 1)]
-    dual_edges = cut_chains(dual_edges, bends, frame)
+    dual_edges = lay_out(cut_chains(crack_edges, dual_edges.crossed[bends]), frame)
     fair = dual_edges.fair_middle
     vector = np.zeros_like(dual_edges.vector)
     shifted = np.concatenate(dual_edges.beside_touching)

@@ -66,30 +66,41 @@ def follow(successor: Ints) -> Sequences:
     n = len(successor)
     if n == 0:
         return Sequences(np.zeros(0, np.int64), np.zeros(1, np.int64), np.zeros(0, bool))
-    item, last, jump = np.arange(n), (successor == NODE).nonzero()[0], successor.copy()
-    jump[last] = last
-    # One number tells both, and the least of two the better goal: the goal, a last item as a negative number, and the steps to it.
-    known = item << STEPS
-    known[last] -= n << STEPS
-    for doublings in range(STEPS):
-        farther = np.minimum(known, known[jump] + (1 << doublings))
-        if np.array_equal(farther, known):
-            break
-        known, jump = farther, jump[jump]
-    goal, steps = known >> STEPS, known & ((1 << STEPS) - 1)
-    goal[goal < 0] += n
+    item, last = np.arange(n), (successor == NODE).nonzero()[0]
+    goal, steps = _goals(successor, item, last)
 
     # Sequences are numbered by their lowest items.
     lowest = np.empty(n, np.int64)
     lowest[goal[::-1]] = item[::-1]
     begin = lowest[goal]
-    number = np.cumsum(begin == item) - 1
-    sequence = number[begin]
+    sequence = (np.cumsum(begin == item) - 1)[begin]
     size = np.bincount(sequence)
     starts, closed = np.concatenate([[0], np.cumsum(size)]), np.ones(len(size), bool)
     closed[sequence[last]] = False
     # A closed sequence begins with its goal, an open one ends with it.
-    place = np.where(closed[sequence], -steps, -1 - steps) % size[sequence]
+    place = np.where(closed[sequence], -steps, -1 - steps)
+    place %= size[sequence]
+    place += starts[sequence]
     order = np.empty(n, np.int64)
-    order[starts[sequence] + place] = item
+    order[place] = item
     return Sequences(order, starts, closed)
+
+
+def _goals(successor: Ints, item: Ints, last: Ints) -> tuple[Ints, Ints]:
+    """Return the goal of each item (n,), and the steps to it; `last` are the items that nothing follows."""
+    n, jump = len(successor), successor.copy()
+    jump[last] = last
+    # One number tells both, and the least of two the better goal: the goal, a last item as a negative number, and the steps to it.
+    known = item << STEPS
+    known[last] -= n << STEPS
+    for doublings in range(STEPS):
+        farther = known[jump]
+        farther += 1 << doublings
+        np.minimum(known, farther, out=farther)
+        if np.array_equal(farther, known):
+            break
+        known, jump = farther, jump[jump]
+    goal = known >> STEPS
+    goal[goal < 0] += n
+    known &= (1 << STEPS) - 1
+    return goal, known

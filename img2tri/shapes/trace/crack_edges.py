@@ -16,7 +16,7 @@ the outlines are long, whatever the size of the image.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -131,6 +131,13 @@ def find_crack_edges(
     successor = _successors(tail, head, on_frame, (h, w), pixels, connectivity)
     values = np.concatenate([[0], seen[number > 0].astype(np.int64)])
     return CrackEdges((h, w), tail, head, left, right, successor, on_frame, values)
+
+
+def cut_chains(crack_edges: CrackEdges, after: Ints) -> CrackEdges:
+    """Cut chains after some crack edges: the corners of pixels there become nodes."""
+    successor = crack_edges.successor.copy()
+    successor[after] = NODE
+    return replace(crack_edges, successor=successor)
 
 
 def _region_numbers(seen: NDArray[Any], background: int | None) -> Ints:

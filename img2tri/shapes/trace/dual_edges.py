@@ -14,14 +14,14 @@ four centres after the other, never meets itself, and so has the topology of the
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from img2tri.arrays import Bools, ChainIndex, Floats, Ints, Points, as_complex, as_rows, cross
 from img2tri.shapes.trace.chains import trace_chains
-from img2tri.shapes.trace.crack_edges import NODE, CrackEdges
+from img2tri.shapes.trace.crack_edges import CrackEdges
 from img2tri.types import Frame, Outlines
 
 BOUND = 0.49  # of the dual edge from its middle, to either side: no crossing comes nearer to a pixel centre
@@ -232,13 +232,6 @@ def lay_out(crack_edges: CrackEdges, frame: Frame) -> DualEdges:
 def _across(along: Points, pixel: complex) -> Points:
     """Return the dual edges of crack edges: a quarter turn to the left; across a vertical one lies the width of a pixel."""
     return np.asarray(1j * (np.sign(along.real) * pixel.imag + 1j * np.sign(along.imag) * pixel.real))
-
-
-def cut_chains(dual_edges: DualEdges, crossings: Ints, frame: Frame) -> DualEdges:
-    """Cut chains after some crossings: the corners of pixels there become nodes."""
-    successor = dual_edges.crack_edges.successor.copy()
-    successor[dual_edges.crossed[crossings]] = NODE
-    return lay_out(replace(dual_edges.crack_edges, successor=successor), frame)
 
 
 def pixels_beside(dual_edges: DualEdges) -> tuple[Floats, Ints]:

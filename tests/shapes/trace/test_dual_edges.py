@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import specimens
 
-from img2tri.shapes.trace.crack_edges import find_crack_edges
-from img2tri.shapes.trace.dual_edges import BOUND, cut_chains, lay_out, pixel_areas, pixels_beside
+from img2tri.shapes.trace.crack_edges import cut_chains, find_crack_edges
+from img2tri.shapes.trace.dual_edges import BOUND, lay_out, pixel_areas, pixels_beside
 from img2tri.types import Frame
 
 FRAMES = {
@@ -137,12 +137,12 @@ def test_a_cut_makes_a_node_and_leaves_all_else():
     assert dual_edges.chains.rings.tolist() == [True]
     assert not dual_edges.is_corner.any()
     kept = crack_edges.successor.copy()
-    one = cut_chains(dual_edges, np.array([5]), frame)
+    one = lay_out(cut_chains(dual_edges.crack_edges, dual_edges.crossed[[5]]), frame)
     assert one.chains.rings.tolist() == [False]
     assert one.node_corner.tolist() == [crack_edges.head[dual_edges.crossed[5]]]
     assert np.array_equal(one.chains.ends[0], one.chains.ends[1])  # the chain begins and ends in the same node
     assert one.is_corner.sum() == 1
-    three = cut_chains(dual_edges, np.array([5, 11, 20]), frame)
+    three = lay_out(cut_chains(dual_edges.crack_edges, dual_edges.crossed[[5, 11, 20]]), frame)
     assert three.chains.rings.tolist() == [False] * 3
     assert three.is_corner.sum() == 3
     assert sorted(three.node_corner.tolist()) == sorted(crack_edges.head[dual_edges.crossed[[5, 11, 20]]].tolist())
