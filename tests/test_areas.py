@@ -37,6 +37,15 @@ def test_small_grains(n, grains, seed):
     assert np.median(errors) <= 0.0006
 
 
+@pytest.mark.parametrize("edge_length", [1, 5, 16])
+@pytest.mark.parametrize("tolerance", [0.25, 0.5, 1, 2])
+def test_holes_of_one_pixel(tolerance, edge_length):
+    holes = np.ones((3, 6), int), np.ones((5, 7), int), np.ones((6, 8), int)
+    holes[0][1, 3] = holes[1][1, 1] = holes[1][3, 3] = holes[2][1, 5] = holes[2][2:4, 1] = holes[2][4, 5] = 0
+    for labels in holes:
+        assert np.abs(area_errors(labels, edge_length=edge_length, tolerance=tolerance, min_angle=0)).max() <= 0.005
+
+
 def test_the_certificate_names_the_region_that_lost_some_of_its_area_and_the_place():
     labels = np.zeros((40, 60), int)
     labels[5:35, 5:25] = 1

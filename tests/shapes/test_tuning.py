@@ -364,9 +364,9 @@ REACHED = {
     "halves": (0.0463, 0.0505), "walls": (0.0655,), "framed": (0.0418,),
     "polygons": (0.0, 0.23), "squares": (0.0,), "teeth": (18.0,), "gray": (0.0040, 0.055, 0.038), "ramps": (0.138, 0.158),
     "colours": (0.0155,),
-    "blob": (85, 0.03), "gear": (118, 0.12), "grains": (172, 0.115), "noise": (700, 0.31, 3.3), "specks": (700, 0.25),
+    "blob": (85, 0.03), "gear": (118, 0.12), "grains": (172, 0.115), "noise": (650, 0.25, 2.8), "specks": (540, 0.2),
     "gears": (745,), "ring": (1.1,), "slid": (0.5, 2.3), "sized": (0.03, 0.031, 31.5), "cells": (0.42,), "long": (120, 0.03),
-    "tiny": (1480, 2.6, 0.06, 5.5), "oblong": (1260, 5.0, 0.1, 8.8), "wide": (1340, 2.8, 0.06, 22.5), "nearly": (650, 3.5, 0.06, 6.5),
+    "tiny": (1460, 2.5, 0.06, 5.0), "oblong": (1140, 4.7, 0.08, 8.2), "wide": (1270, 2.6, 0.04, 20.5), "nearly": (580, 2.4, 0.06, 4.8),
     "checkers": (5.6,),
 }  # fmt: skip
 
@@ -390,11 +390,11 @@ MATTERS = [
     ("AMID", 8, "cells", 0), ("LEAST_WEDGE", 0.5, "tiny", 3), ("SHORTEST_PART", 2, "specks", 1), ("LONG", 0.9, "nearly", 0),
     ("SHORT", 0.5, "wide", 0), ("STILL_OFF", 2, "long", 1), ("AREA_ERROR", 10, "gear", 3), ("RESPACINGS", 0.5, "specks", 1),
     ("EXCHANGE_ROUNDS", 0, "tiny", 2), ("MOST_AREA_ROUNDS", 0.5, "oblong", 2), ("EXCHANGES", 0, "tiny", 2),
-    ("MOST_EXCHANGED", 0, "tiny", 2), ("LEAST_ROOM", 0, "tiny", 0), ("SMALLER", 2, "tiny", 2),
+    ("MOST_EXCHANGED", 0, "tiny", 2), ("LEAST_ROOM", 0, "wide", 1), ("SMALLER", 2, "tiny", 2),
     ("STRANGE", 2, "colours", 0), ("LASTING", 0.5, "gears", 0), ("FOR_ALL", 0, "wide", 0),
     ("LEAST_STEP", 2, "disc 60", 0), ("ARC_BLUR", 2, "blob", 1),
     ("SHORTEST_NARROW", 2, "tiny", 3),
-    ("MOST_SHIFT", 0.5, "checkers", 0), ("BLUNT", 0, "checkers", 0), ("INNER", 0, "oblong", 1), ("UNSURE", 0, "oblong", 2),
+    ("MOST_SHIFT", 0.5, "checkers", 0), ("BLUNT", 0, "checkers", 0), ("INNER", 0, "wide", 1), ("UNSURE", 0, "wide", 1),
     ("BASE", 0.5, "disc 60", 0),
 ]  # fmt: skip
 

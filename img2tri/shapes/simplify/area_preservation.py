@@ -10,14 +10,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from img2tri.arrays import Bools, Floats, Ints, cross
+from img2tri.arrays import Bools, Floats, cross
 from img2tri.shapes.region_pressures import region_pressures
+from img2tri.shapes.simplify.closer_spacing import spaced_closer
 from img2tri.shapes.simplify.simplification import Simplification
-from img2tri.shapes.simplify.vertex_offsets import NormalOffsets, areas_beside, chord_arc_areas
+from img2tri.shapes.simplify.vertex_offsets import NormalOffsets, areas_beside
 from img2tri.shapes.trace.dual_edges import pixel_areas
 
 LACKING_AREA = 0.003  # of the area of a region: what it may lack before it gets more vertices
-GREAT = 0.8  # of the greatest chord-arc area of a chain: the chords that get them
 EXCHANGE_ROUNDS = 3  # of leaving out vertices that cannot move the way they should
 LEAST_ROOM = 1e-3  # px, vertices that can move no farther are left out
 SMALL_REGION = 16  # pixels: the area of smaller regions is not looked after
@@ -28,7 +28,7 @@ def preserve_areas(s: Simplification, *, tolerance: float, among: Bools | None =
 
     Each vertex takes up half of the chord-arc areas beside it; what then is missing of a region, since some vertices cannot move, is
     shared evenly by the others, see `region_pressures`. No vertex ends farther from the outline than the tolerance. Where that leaves a
-    region with too much or too little, vertices are added, to be offset the next time.
+    region with too much or too little, it gets more vertices, see `closer_spacing`.
 
     With `above`, the relative error that is borne, only that is shared what is missing. With `among`, entries (k,), only these are offset
     to share it, and no vertices are added: what lies well for its arcs stays so.
@@ -44,13 +44,8 @@ def preserve_areas(s: Simplification, *, tolerance: float, among: Bools | None =
         return result
     areas = pixel_areas(s.dual_edges)
     areas[0] = np.inf
-    off = np.abs(_gained_areas(result))
-    off[areas <= (SMALL_REGION if above else 0)] = 0
-    lacking = off > (above or LACKING_AREA) * areas
-    first, last = s.chords
-    kept = s.kept.copy()
-    kept[_middles(s, first, last, np.abs(chord_arc_areas(s)), lacking[s.outlines.left] | lacking[s.outlines.right])] = True
-    return replace(result, kept=kept)
+    off = (np.abs(_gained_areas(result)) > (above or LACKING_AREA) * areas) & (areas > (SMALL_REGION if above else 0))
+    return spaced_closer(result, off, tolerance=tolerance) if off.any() else result
 
 
 def _exchange(s: Simplification, free: NormalOffsets, width: Floats, tolerance: float) -> Floats:
@@ -90,13 +85,3 @@ def _gained_areas(s: Simplification) -> Floats:
     size = len(s.outlines.labels)
     gained = np.bincount(s.outlines.left[chain[first]], difference, size) - np.bincount(s.outlines.right[chain[first]], difference, size)
     return np.asarray(gained, np.float64)
-
-
-def _middles(s: Simplification, first: Ints, last: Ints, cut: Floats, chosen: Bools) -> Ints:
-    """Middle entries of the chords that cut off most, in each of the chosen chains that have one to split."""
-    chain = s.chains.chain[first]
-    able = (chosen[chain] & (last - first > 1)).nonzero()[0]
-    greatest = np.zeros(len(chosen))
-    np.maximum.at(greatest, chain[able], cut[able])
-    able = able[cut[able] >= GREAT * greatest[chain[able]]]
-    return (first[able] + last[able]) // 2

@@ -19,6 +19,7 @@ from img2tri.arrays import Floats, Ints, Points, cross
 from img2tri.shapes.simplify.simplification import Simplification
 
 MOST_OFFSET = 0.8  # of the tolerance: how far along the normal a vertex may be offset
+CHORD_SHARE = 1 / 3  # of the shorter chord beside it: no vertex is offset farther; small rings would shrink to a point and be snapped
 SNAPPED_SLACK = 0.12  # px: how far along the normal a snapped vertex may be offset
 FAIRINGS = 6  # how often a zigzag is smoothed
 FAIR = 0.5  # of `MOST_OFFSET`: how far a vertex may go for that
@@ -70,6 +71,7 @@ class NormalOffsets:
         self._dense = s.dense
         self._points = self._dense[self.at], self._dense[before], self._dense[self.at + 1]
         self._snapped = s.snapped[point]
+        self._shorter = np.minimum(*(np.abs(s.dense[beside] - s.dense[self.at]) for beside in (self.ahead, self.behind)))
         self._rest = s.dual_edges.blunt_middle[point] - self._points[0]
 
     def zigzag(self, offset: Points) -> Floats:
@@ -93,7 +95,8 @@ class NormalOffsets:
         way = np.where(along > 0, after, before) - point
         on_outline = way * np.clip(np.abs(along) / np.maximum(np.abs(way), 1e-12), 0, 1)
         start = np.where(self._snapped, self._rest, on_outline)
-        off, most = ((here - start) * right.conj()).real, np.where(self._snapped, SNAPPED_SLACK, MOST_OFFSET * tolerance)
+        off = ((here - start) * right.conj()).real
+        most = np.where(self._snapped, SNAPPED_SLACK, np.minimum(MOST_OFFSET * tolerance, CHORD_SHARE * self._shorter))
         result = offset.copy()
         new = here + (np.clip(off + step, -most, most) - off) * right
         result[self.at] = np.where(self._snapped & (np.abs(new) > np.maximum(np.abs(here), MOST_OFFSET * tolerance)), here, new)

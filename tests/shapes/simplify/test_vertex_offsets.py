@@ -15,6 +15,7 @@ from img2tri.shapes.simplify.area_preservation import area_errors
 from img2tri.shapes.simplify.simplification import space_evenly
 from img2tri.shapes.simplify.tolerance import enforce_tolerance
 from img2tri.shapes.simplify.vertex_offsets import (
+    CHORD_SHARE,
     MOST_OFFSET,
     NormalOffsets,
     areas_beside,
@@ -76,6 +77,15 @@ def test_vertices_stay_near_the_outline_however_far_they_are_sent(name, toleranc
         assert shapely.distance(dense, shapely.points(at.real, at.imag)).max() <= MOST_OFFSET * tolerance + 1e-9
         first, last = d.outlines.chains.starts[:-1][d.dual_edges.chains.rings], d.outlines.chains.starts[1:][d.dual_edges.chains.rings] - 1
         assert np.array_equal(d.offset[first], d.offset[last])
+
+
+def test_small_rings_do_not_vanish():
+    """The ring around one pixel has four vertices, which smoothing takes for a zigzag, and a great tolerance does not hold them."""
+    d = drafted(specimens.MASKS["one pixel"], 6.0)
+    first, last = d.chords
+    shortest = np.abs(d.places[last] - d.places[first]).min()
+    moved = offset_vertices(d, tolerance=2.0, keep_area=False)
+    assert 0.1 < np.abs(moved.offset).max() <= CHORD_SHARE * shortest + 1e-9
 
 
 def test_what_cannot_move_stays():
