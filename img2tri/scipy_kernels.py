@@ -1,7 +1,7 @@
 """SciPy's compiled kernels, without the packages around them: to import `scipy.linalg` or `scipy.sparse` takes longer than a small mesh.
 
 Out: functions. These packages import a good part of NumPy and of each other, 0.3 s in all, for the sake of what is not used here; the
-extension modules in them need none of it. Where they are not where they were, what is public in SciPy is taken instead.
+extension modules in them need none of it. Where they are not where they were, what is public in SciPy or NumPy is taken instead.
 """
 
 from __future__ import annotations
@@ -48,21 +48,31 @@ def csc_matvec() -> Callable[..., None]:
 
 
 @cache
-def csr_tocsc() -> Callable[..., None]:
-    """Return the function that stores by columns a sparse matrix stored by rows.
+def sparse_sorts() -> tuple[Callable[..., Any], Callable[..., Any]]:
+    """Return ``coo_tocsr`` and ``csr_tocsc``, which store a sparse matrix by rows, and one stored by rows by columns.
 
-    Its arguments are both sizes, where rows end, columns and values of entries; and what it writes: where columns end, rows and values.
+    They keep the order of entries of one row, or one column. Arguments are both sizes; the matrix, the first time the number of entries
+    and their rows, columns and values, the second time where rows end, columns and values; and what is written: where rows end, or
+    columns, then columns, or rows, and values.
     """
     try:
-        return _extension("sparse", "_sparsetools").csr_tocsc  # type: ignore[no-any-return]
+        kernels = _extension("sparse", "_sparsetools")
+        return kernels.coo_tocsr, kernels.csr_tocsc
     except MOVED:
-        from scipy.sparse import csr_array
+        import numpy as np
 
-        def store(n: int, m: int, ends: Any, columns: Any, data: Any, out_ends: Any, out_rows: Any, out_data: Any) -> None:
-            made = csr_array((data, columns, ends), shape=(n, m)).tocsc()
-            out_ends[:], out_rows[:], out_data[:] = made.indptr, made.indices, made.data
+        def sort(keys: Any, size: int, others: Any, data: Any, out_ends: Any, out_others: Any, out_data: Any) -> None:
+            order = np.argsort(keys, kind="stable")
+            out_ends[:] = np.concatenate([[0], np.cumsum(np.bincount(keys, minlength=size))])
+            out_others[:], out_data[:] = others[order], data[order]
 
-        return store
+        def by_rows(n: int, _m: int, _count: int, rows: Any, columns: Any, data: Any, *out: Any) -> None:
+            sort(rows, n, columns, data, *out)
+
+        def by_columns(n: int, m: int, ends: Any, columns: Any, data: Any, *out: Any) -> None:
+            sort(columns, m, np.arange(n).repeat(np.diff(ends)), data, *out)
+
+        return by_rows, by_columns
 
 
 def _extension(package: str, name: str) -> Any:

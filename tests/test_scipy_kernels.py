@@ -35,11 +35,11 @@ def place(request, monkeypatch):
         monkeypatch.delitem(sys.modules, "scipy.sparse._sparsetools")
     scipy_kernels.banded_cholesky.cache_clear()
     scipy_kernels.csc_matvec.cache_clear()
-    scipy_kernels.csr_tocsc.cache_clear()
+    scipy_kernels.sparse_sorts.cache_clear()
     yield
     scipy_kernels.banded_cholesky.cache_clear()
     scipy_kernels.csc_matvec.cache_clear()
-    scipy_kernels.csr_tocsc.cache_clear()
+    scipy_kernels.sparse_sorts.cache_clear()
 
 
 @pytest.mark.usefixtures("place")
@@ -63,11 +63,15 @@ def test_products_are_added(kind):
 
 @pytest.mark.usefixtures("place")
 @pytest.mark.parametrize("kind", [np.int32, np.int64])
-def test_matrices_are_stored_by_columns(kind):
-    ends, columns, data = np.array([0, 2, 2, 3], kind), np.array([0, 3, 0], kind), np.array([5, 6, 7], np.int8)
-    out = np.empty(5, kind), np.empty(3, kind), np.empty(3, np.int8)
-    scipy_kernels.csr_tocsc()(3, 4, ends, columns, data, *out)
-    assert [part.tolist() for part in out] == [[0, 2, 2, 2, 3], [0, 2, 0], [5, 7, 6]]
+def test_matrices_are_stored_by_rows_and_by_columns(kind):
+    by_rows, by_columns = scipy_kernels.sparse_sorts()
+    rows, columns, data = np.array([2, 0, 2, 0], kind), np.array([0, 3, 0, 0], kind), np.array([7, 6, 8, 5], kind)
+    out = np.empty(4, kind), np.empty(4, kind), np.empty(4, kind)
+    by_rows(3, 4, 4, rows, columns, data, *out)
+    assert [part.tolist() for part in out] == [[0, 2, 2, 4], [3, 0, 0, 0], [6, 5, 7, 8]]
+    turned = np.empty(5, kind), np.empty(4, kind), np.empty(4, kind)
+    by_columns(3, 4, *out, *turned)
+    assert [part.tolist() for part in turned] == [[0, 3, 3, 3, 4], [0, 2, 2, 0], [5, 7, 8, 6]]
 
 
 def test_kernels_come_without_their_packages_which_can_be_imported_after_them():

@@ -3,54 +3,73 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from img2tri.arrays import Bools, Ints, unique_edges
+from img2tri.arrays import Bools, Ints, runs, sorted_sides
 
 
 @dataclass(frozen=True, eq=False)
 class EdgeSides:
-    """The edges of a mesh, and what lies on their sides.
+    """Edges of a mesh, and the sides of triangles at each: side ``3 i + k`` from corner k of triangle i to the next.
 
     Attributes
     ----------
-    edges
-        (e, 2) int64, lower vertex first.
     sides
-        (3 m,) int64, the edge of each side of each triangle, side ``3 i + k`` from corner k of triangle i to the next.
-    counts
-        (e,) int64, how many triangles each edge has.
-    first, last
-        (e,) int64, the first and the last side at each edge: its only two, but where more than two triangles meet.
+        (s,) integer, those of one edge follow each other, in their order.
+    starts
+        (e + 1,) integer: edge i has ``sides[starts[i]:starts[i + 1]]``.
+    lower, higher
+        (e,) integer, the vertices at its ends.
     """
 
-    edges: Ints
-    sides: Ints
-    counts: Ints
-    first: Ints
-    last: Ints
+    sides: NDArray[np.integer[Any]]
+    starts: NDArray[np.integer[Any]]
+    lower: NDArray[np.integer[Any]]
+    higher: NDArray[np.integer[Any]]
 
     @classmethod
     def of(cls, triangles: Ints) -> EdgeSides:
         """Find the edges of triangles (m, 3)."""
-        edges, found = unique_edges(triangles)
-        sides, number = found.ravel(), np.arange(found.size)
-        first, last = np.empty((2, len(edges)), np.int64)
-        last[sides] = number
-        first[sides[::-1]] = number[::-1]
-        return cls(edges, sides, np.bincount(sides), first, last)
+        sides, lower, higher = sorted_sides(triangles)
+        new = np.ones(len(sides) + 1, bool)
+        np.not_equal(lower[1:], lower[:-1], out=new[1:-1])
+        new[1:-1] |= higher[1:] != higher[:-1]
+        starts = new.nonzero()[0].astype(sides.dtype)
+        return cls(sides, starts, lower.take(starts[:-1]), higher.take(starts[:-1]))
 
-    def span(self, number: Ints) -> tuple[Ints, Ints]:
-        """Return the least and the greatest of the numbers (m,) of the triangles at each edge."""
-        one, other = number[self.first // 3], number[self.last // 3]
-        low, high = np.minimum(one, other), np.maximum(one, other)
-        crowded = np.flatnonzero((self.counts > 2)[self.sides])
-        np.minimum.at(low, self.sides[crowded], number[crowded // 3])
-        np.maximum.at(high, self.sides[crowded], number[crowded // 3])
-        return low, high
+    @property
+    def edges(self) -> Ints:
+        """(e, 2) int64, lower vertex first."""
+        return np.stack([self.lower, self.higher], axis=1).astype(np.int64)
 
-    def curves(self, number: Ints) -> Bools:
-        """Tell which edges bound the mesh or part two regions, or have more than two triangles."""
-        low, high = self.span(number)
-        return np.asarray((self.counts != 2) | (low < high))
+    @property
+    def counts(self) -> NDArray[np.integer[Any]]:
+        """(e,) how many sides each edge has."""
+        return np.diff(self.starts)
+
+    @property
+    def edge(self) -> Ints:
+        """(s,) the edge of each side."""
+        return np.arange(len(self.lower)).repeat(self.counts)
+
+    def at_both_ends(self) -> tuple[NDArray[np.integer[Any]], NDArray[np.integer[Any]]]:
+        """Return the first and the last side (e,) at each edge: its only two, but where more than two triangles meet."""
+        return self.sides.take(self.starts[:-1]), self.sides.take(self.starts[1:] - 1)
+
+    def curves(self, regions: Ints) -> Bools:
+        """Tell which edges bound the mesh or part two regions (m,), or have more than two triangles."""
+        found = self.counts != 2
+        if regions.min(initial=0) < regions.max(initial=0):
+            first, last = self.at_both_ends()
+            found |= regions[first // 3] != regions[last // 3]
+        return np.asarray(found)
+
+    def among(self, chosen: Bools) -> EdgeSides:
+        """Return the chosen (e,) edges alone."""
+        at, counts = chosen.nonzero()[0], self.counts[chosen]
+        edge, place = runs(counts.astype(np.int64))
+        sides = self.sides[self.starts[at][edge] + place]
+        return EdgeSides(sides, np.append(np.cumsum(counts) - counts, len(sides)), self.lower[at], self.higher[at])

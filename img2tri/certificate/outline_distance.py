@@ -154,8 +154,10 @@ def _around(corners: Points, places: Points) -> tuple[Ints, Ints]:
 
 def _near(z: Points, triangles: Ints, places: Points) -> Ints:
     """Triangles that may hold one of some places: those large or near one, by squares of a grid as wide as most triangles."""
-    a, b, c = (z[corner] for corner in triangles.T)
-    size = np.maximum(np.abs(b - a), np.abs(c - a))  # no place in the triangle is farther from its first corner
+    corner, size = np.empty(len(triangles), np.complex128), np.empty(len(triangles))
+    for block in blocks(len(triangles)):
+        a, b, c = z[np.ascontiguousarray(triangles[block].T)]
+        corner[block], size[block] = a, np.maximum(np.abs(b - a), np.abs(c - a))  # no place is farther from the first corner
     both = np.concatenate([z, places])  # a mesh may lie to one side of the places
     low = complex(both.real.min(), both.imag.min())
     extent = float(max(np.ptp(both.real), np.ptp(both.imag)))
@@ -169,4 +171,7 @@ def _near(z: Points, triangles: Ints, places: Points) -> Ints:
     for up in (-columns, 0, columns):
         for right in (-1, 0, 1):
             marked[hit + up + right] = True
-    return np.flatnonzero(marked[square(a)] | (size > width))
+    near = size > width
+    for block in blocks(len(triangles)):
+        near[block] |= marked[square(corner[block])]
+    return np.flatnonzero(near)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from img2tri.arrays import Floats, Ints, as_complex
+from img2tri.arrays import Floats, Ints, as_complex, blocks
 from img2tri.certificate.outline_distance import SegmentSet
 from img2tri.types import Provenance
 
@@ -28,9 +28,13 @@ def region_numbers(regions: Ints, labels: Ints) -> tuple[Ints, list[int]]:
 
 def moments(plane: Floats, triangles: Ints, number: Ints, size: int) -> Moments:
     """Area of each region number in the mesh, and the integrals of x and y over it."""
-    a, b, c = as_complex(plane)[triangles].T
-    area, middle = ((b - a).conj() * (c - a)).imag / 2, (a + b + c) / 3
-    parts = area, area * middle.real, area * middle.imag
+    z, parts = as_complex(plane), np.empty((3, len(triangles)))
+    for block in blocks(len(triangles)):
+        a, b, c = z[np.ascontiguousarray(triangles[block].T)]
+        area, middle = ((b - a).conj() * (c - a)).imag / 2, (a + b + c) / 3
+        parts[0, block] = area
+        np.multiply(area, middle.real, out=parts[1, block])
+        np.multiply(area, middle.imag, out=parts[2, block])
     first, second, third = (np.asarray(np.bincount(number, part, size), np.float64) for part in parts)
     return first, second, third
 

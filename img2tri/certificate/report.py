@@ -169,7 +169,9 @@ def certify(
     plane, outlines = (vertices - frame.corner) / frame.pixel, origin.outlines
     number, unknown = region_numbers(regions, outlines.labels)
     sides = EdgeSides.of(triangles)
-    curves = SegmentSet(plane, sides.edges[sides.curves(regions)])
+    parting = sides.curves(regions)
+    border = sides.among(parting)
+    curves = SegmentSet(plane, border.edges)
     distance, farthest = hausdorff(SegmentSet(outlines.points, outlines.segments[0]), curves)
     tell("pixels", 0.3)
     wrong = wrong_pixels(plane, triangles, number, curves, origin)
@@ -178,7 +180,7 @@ def certify(
     narrow = worst[angle < (origin.min_angle or 0.0) - 1e-9]
     places = vertices[triangles[np.append(narrow[:PLACES], worst[np.argmin(angle)])]].mean(axis=1)
     tell("topology", 0.6)
-    missing, extra = neighbours(number, sides, outlines)
+    missing, extra = neighbours(number, border, outlines)
     found = moments(plane, triangles, number, len(origin.areas))
     promised = origin.tolerance is not None and origin.options.get("keep_area", True)
     off = regions_off(found, curves, origin) if promised else {}
@@ -191,13 +193,13 @@ def certify(
         "areas": region_areas(found, origin, frame.pixel),
         "areas_off": {label: _place(frame.world(at)) for label, at in off.items()},
         "displaced": displaced(found, origin),
-        "topology": topology(triangles, number, sides, outlines),
+        "topology": topology(triangles, number, sides, parting, outlines),
         "unknown_labels": unknown,
         "neighbours_missing": missing,
         "neighbours_extra": extra,
         "wrong_pixels": len(wrong),
         "wrong_pixels_at": [_place(p) for p in frame.world(wrong[:PLACES])],
-        **defects(vertices, triangles, regions, sides),
+        **defects(vertices, triangles, regions, border),
         "smallest_angle": float(angle.min()),
         "smallest_angle_at": _place(places[-1]),
         "min_angle": origin.min_angle,

@@ -31,13 +31,18 @@ def test_the_sides_of_each_edge(seed):
     for i, t in enumerate(triangles.tolist()):
         for k in range(3):
             found.setdefault(tuple(sorted((t[k], t[(k + 1) % 3]))), []).append(3 * i + k)
-    assert sorted(found) == list(map(tuple, sides.edges.tolist()))
-    low, high = sides.span(number)
-    for i, edge in enumerate(map(tuple, sides.edges.tolist())):
-        at, of = found[edge], number[np.array(found[edge]) // 3]
-        assert (sides.sides[at] == i).all()
-        assert (sides.counts[i], sides.first[i], sides.last[i]) == (len(at), at[0], at[-1])
-        assert (low[i], high[i]) == (of.min(), of.max())
+    chosen = np.arange(len(found)) % 3 != 1
+    for some, which in ((sides, np.ones_like(chosen)), (sides.among(chosen), chosen)):
+        assert [edge for edge, there in zip(sorted(found), which, strict=True) if there] == list(map(tuple, some.edges.tolist()))
+        ends = some.at_both_ends()
+        for i, edge in enumerate(map(tuple, some.edges.tolist())):
+            at = found[edge]
+            assert some.sides[some.starts[i] : some.starts[i + 1]].tolist() == at
+            assert (some.counts[i], ends[0][i], ends[1][i]) == (len(at), at[0], at[-1])
+            assert (some.edge[some.starts[i] : some.starts[i + 1]] == i).all()
+    parting = [len(at) != 2 or number[at[0] // 3] != number[at[1] // 3] for _, at in sorted(found.items())]
+    assert sides.curves(number).tolist() == parting
+    assert sides.curves(np.zeros_like(number)).tolist() == [len(at) != 2 for _, at in sorted(found.items())]
 
 
 @pytest.mark.parametrize("below", [0.0, 5.0, 30.0])
