@@ -45,12 +45,15 @@ class Lattice:
         Number of nodes in the even rows; odd rows have one less and lie half a pitch further right.
     rows
         Number of rows.
+    node
+        Where places are counted from, one of its nodes: that which windows of one image have in common, or node 0.
     """
 
     origin: complex
     pitch: float
     width: int
     rows: int
+    node: complex
 
     @classmethod
     def over(cls, points: Points, pitch: float, shift: complex = 0, node: complex | None = None) -> Lattice:
@@ -61,11 +64,13 @@ class Lattice:
             below = 2 * int(np.ceil(((node - low).imag / (ROW * pitch) + MARGIN) / 2))
             origin = node - pitch * complex(int(np.ceil((node - low).real / pitch)) + MARGIN, ROW * below)
             size = high - origin
-            return cls(origin, pitch, int(np.ceil(size.real / pitch)) + MARGIN + 1, int(np.ceil(size.imag / (ROW * pitch))) + MARGIN + 1)
+            width, rows = int(np.ceil(size.real / pitch)) + MARGIN + 1, int(np.ceil(size.imag / (ROW * pitch))) + MARGIN + 1
+            return cls(origin, pitch, width, rows, node)
         columns = int(np.ceil((high - low).real / pitch - ROW_ROUNDING)) + 2 * MARGIN
         rows = int(np.ceil((high - low).imag / (ROW * pitch) - ROW_ROUNDING)) + 2 * MARGIN
         centre = pitch * complex(columns / 2, ROW * rows / 2)
-        return cls((low + high) / 2 - centre + shift * pitch, pitch, columns + 1, rows + 1)
+        origin = (low + high) / 2 - centre + shift * pitch
+        return cls(origin, pitch, columns + 1, rows + 1, origin)
 
     @property
     def height(self) -> float:

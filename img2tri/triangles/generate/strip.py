@@ -24,7 +24,8 @@ from img2tri.triangles.min_angle_tangents import min_angle_tangents
 
 CLEAR = 0.66  # lattice nodes nearer to an outline or apex than this times the wanted length are dropped
 WITHIN = 0.3  # of the shorter part beside it: how far a point slides in which a segment was divided
-NUDGE, GOLDEN = 1e-7, 0.618  # of the shortest segment: how far free points are put off; of a turn, from one to the next: any odd part
+NUDGE = 1e-7  # of the length wanted there: how far free points are put off
+GOLDEN, PLASTIC = 0.618, 0.7549  # of a turn, for each pitch to the right and up; any odd parts do
 
 
 Settle = Callable[[Floats], Floats]
@@ -83,8 +84,9 @@ def lay_strip(pslg: Pslg, at_points: Floats, at_middles: Floats, sizes: SizeFunc
     codes = lattice.codes(pslg.points, pslg.segments, pslg.left, pslg.right)
     busy, fine, fine_lengths = _fine(pslg, sizes, lattice, codes)
     if len(fine):
-        fine = fine[_clear(near, fine, fine_lengths)]
-        fine = fine[_inside(pslg, fine)]
+        stays = _clear(near, fine, fine_lengths)
+        stays[stays] = _inside(pslg, fine[stays])
+        fine, fine_lengths = fine[stays], fine_lengths[stays]
     codes[lattice.near(near, CLEAR * wanted)] = 0
     # The core keeps clear of finer nodes too.
     deep = codes.copy()
@@ -99,8 +101,11 @@ def lay_strip(pslg: Pslg, at_points: Floats, at_middles: Floats, sizes: SizeFunc
     rim, ends = np.unique(edges, return_inverse=True)
     constraints = pslg.joined(lattice.positions(rim), ends.reshape(-1, 2), right=codes[edges[:, 0]].astype(np.int64))
     free = np.concatenate([near[len(pslg.points) :], lattice.positions(between), fine])
-    # Nodes of a lattice lie on common circles, over which exact predicates take long: a nudge, and they do not.
-    free += NUDGE * pslg.lengths.min() * np.exp(2j * np.pi * GOLDEN * np.arange(len(free)))
+    # Nodes of a lattice lie on common circles, over which exact predicates take long: a nudge, and they do not. Its direction follows
+    # from where a point lies, so that windows of one image, which have other points far away, triangulate it alike.
+    lengths = np.concatenate([wanted[len(pslg.points) :], np.full(len(between), lattice.pitch), fine_lengths])
+    way = (free - lattice.node) / lattice.pitch
+    free += NUDGE * lengths * np.exp(2j * np.pi * (GOLDEN * way.real + PLASTIC * way.imag))
     return Strip(constraints, len(pslg.segments), free, core, rim)
 
 
