@@ -52,11 +52,13 @@ def crowded_chords(s: Simplification, first: Ints, last: Ints, deviation: Floats
     head, tail = at[first], at[last]
     apart = (head[i] != head[j]) & (head[i] != tail[j]) & (tail[i] != head[j]) & (tail[i] != tail[j])
     i, j = i[apart], j[apart]
+    crowded = np.zeros(len(first), bool)
+    if not len(i):
+        return crowded
     distance = _distance(a[i], b[i], a[j], b[j])
     near = (distance < GAP + deviation[i] + deviation[j]).nonzero()[0]
     i, j, distance = i[near], j[near], distance[near]
     # Along the same chain two chords are only near if the way between them is long for that.
-    crowded = np.zeros(len(first), bool)
     if len(i):
         long = _way_between(s, first, last, i, j) > np.maximum(4 * distance, 1.0)
         crowded[i[long]] = crowded[j[long]] = True
@@ -113,9 +115,8 @@ def _distance(a: Points, b: Points, c: Points, d: Points) -> Floats:
     """Distance between segments from a to b and from c to d; 0 where they cross."""
     crossing = cross(b - a, c - a) * cross(b - a, d - a) < 0
     crossing &= cross(d - c, a - c) * cross(d - c, b - c) < 0
-    least = np.minimum(to_segment(a, c, d), to_segment(b, c, d))
-    least = np.minimum(least, np.minimum(to_segment(c, a, b), to_segment(d, a, b)))
-    return np.where(crossing, 0, least)
+    ends = to_segment(np.concatenate([a, b, c, d]), np.concatenate([c, c, a, a]), np.concatenate([d, d, b, b]))
+    return np.where(crossing, 0, ends.reshape(4, -1).min(axis=0))
 
 
 def to_segment(p: Points, a: Points, b: Points) -> Floats:

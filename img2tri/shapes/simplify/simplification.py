@@ -69,7 +69,7 @@ class Simplification:
         joined[np.searchsorted(at, self.chains.starts[1:-1]) - 1] = False
         return at[:-1][joined], at[1:][joined]
 
-    @property
+    @cached_property
     def entries(self) -> Ints:
         """(p,) the first entry of each point of the coarse outlines, in the order these have: that of the dense points."""
         at = self.kept.nonzero()[0]

@@ -163,9 +163,13 @@ class _Loop:
     def _return_to_points(self) -> bool:
         """Let vertices that were moved along their chain go back, where their own point lies too far from the chords they end."""
         s, (first, last) = self.s, self.s.chords
-        if not (np.abs(s.offset[np.concatenate([first, last])]) > self.tolerance).any():
+        at = s.kept.nonzero()[0]
+        at = at[np.abs(s.offset[at]) > self.tolerance]
+        at = at[~s.snapped[s.chains.indices[at]]]
+        if not len(at):
             return False
-        astray = (np.abs(s.offset) > self.tolerance) & ~s.snapped_entries
+        astray = np.zeros(len(s.kept), bool)
+        astray[at] = True
         ends = astray[first] | astray[last]
         first, last = first[ends], last[ends]
         place, distance = s.places, np.full(len(s.dense), np.inf)

@@ -30,14 +30,17 @@ def limit_growth(size: Floats, z: Points, chains: ChainIndex, gradation: float) 
     """
     arc, chain = arc_lengths(z, chains), chains.chain
     ends = np.concatenate([chains.first, chains.last])
+    points, count = chains.indices[ends], int(chains.indices.max(initial=-1)) + 1
     apart = (size.max(initial=0.0) + gradation * arc.max(initial=0.0) + 1) * chain  # keeps chains from seeing each other
     for _ in range(PASSES):
         ahead = np.minimum.accumulate(size - gradation * arc - apart) + gradation * arc + apart
         back = np.minimum.accumulate((size + gradation * arc + apart)[::-1])[::-1] - gradation * arc - apart
         size = np.minimum(ahead, back)
-        least = np.full(chains.indices.max(initial=-1) + 1, np.inf)
-        np.minimum.at(least, chains.indices[ends], size[ends])
-        size[ends] = least[chains.indices[ends]]
+        least = np.full(count, np.inf)
+        np.minimum.at(least, points, size[ends])
+        if (least[points] == size[ends]).all():
+            break
+        size[ends] = least[points]
     return size
 
 

@@ -33,10 +33,9 @@ def lengths_near(
     return SizeFunction(largest, gradation, places[short], lengths[short], field)
 
 
-def reach(sizes: SizeFunction) -> float:
-    """How far from a source of a size function a finer lattice may be needed."""
-    shortest = float(sizes.lengths.min(initial=sizes.largest))
-    return ((LONGEST + sizes.gradation) / RATIO * sizes.largest - shortest) / sizes.gradation
+def reaches(sizes: SizeFunction) -> Floats:
+    """How far (k,) from each source of a size function a finer lattice may be needed."""
+    return ((LONGEST + sizes.gradation) / RATIO * sizes.largest - sizes.lengths) / sizes.gradation
 
 
 def finer(lattice: Lattice, nodes: Ints, sizes: SizeFunction) -> tuple[Ints, Points, Floats]:

@@ -119,18 +119,19 @@ class Lattice:
         np.add.at(steps, self.start(row) + column, change[of].astype(np.int32))
         return np.cumsum(steps, dtype=np.int32)
 
-    def near(self, centres: Points, radius: Floats) -> Ints:
-        """Return the nodes nearer than `radius` (below one pitch) to the centres; one may be returned twice."""
-        place = (centres - self.origin) / self.pitch
-        found = []
-        for up in (-1, 0, 1):
-            row = np.rint(place.imag / ROW).astype(np.int64) + up
+    def near(self, centres: Points, radius: Floats) -> tuple[Ints, Ints]:
+        """Return the nodes nearer than `radius` (below one pitch) to the centres, and to which of them; one may be near several."""
+        around, found = np.arange(-1, 2)[:, None], [np.zeros((2, 0), np.int64)]
+        for block in blocks(len(centres), 1 << 12):
+            place = (centres[block] - self.origin) / self.pitch
+            row = np.rint(place.imag / ROW).astype(np.int64) + around
             shift = 0.5 * (row % 2)
-            for right in (-1, 0, 1):
-                column = np.rint(place.real - shift).astype(np.int64) + right
-                close = np.abs(column + shift + 1j * ROW * row - place) * self.pitch < radius
-                found.append((self.start(row) + column)[close])
-        return np.concatenate(found)
+            column = np.rint(place.real - shift).astype(np.int64) + around[:, None]
+            across, up = column + (shift - place.real), ROW * row - place.imag
+            close = (across**2 + up**2 < (radius[block] / self.pitch) ** 2).nonzero()
+            found.append(np.stack([(self.start(row) + column)[close], block.start + close[2]]))
+        nodes, of = np.concatenate(found, axis=1)
+        return nodes, of
 
     @property
     def neighbours(self) -> tuple[int, ...]:

@@ -59,6 +59,8 @@ class SizeFunction:
         for sources, lengths in self._classes:
             least = lengths.min()
             open_ = (wanted > least).nonzero()[0]
+            if not len(open_):
+                continue
             distance, nearest = sources.nearest(points[open_], (self.largest - least) / self.gradation)
             found = (nearest < len(lengths)).nonzero()[0]
             open_, nearest = open_[found], nearest[found]
@@ -92,7 +94,7 @@ class _Sources:
     def nearest(self, points: Points, reach: float) -> tuple[Floats, Ints]:
         """Return what `nearest_of` does."""
         count = len(self._places)
-        if not 0 < count * len(points) <= FEW_PAIRS:
+        if not count or count * len(points) > FEW_PAIRS:
             distance, nearest = self._tree.query(as_rows(points), distance_upper_bound=reach)
             return np.asarray(distance, np.float64), np.asarray(nearest, np.int64)
         across, up = (points.real[:, None] - self._places.real), (points.imag[:, None] - self._places.imag)

@@ -14,7 +14,7 @@ import numpy as np
 from img2tri.arrays import Bools, Floats, Ints, Points, as_complex, as_rows
 from img2tri.triangles.generate.constrained_delaunay import triangulate
 from img2tri.triangles.generate.first_layer import apexes, uncrowded
-from img2tri.triangles.generate.graded_lattice import finer, reach
+from img2tri.triangles.generate.graded_lattice import finer, reaches
 from img2tri.triangles.generate.hexagonal_lattice import Codes, Core, Lattice
 from img2tri.triangles.generate.interior_sizes import SizeFunction, nearest_of
 from img2tri.triangles.generate.pslg import Pslg
@@ -87,7 +87,7 @@ def lay_strip(pslg: Pslg, at_points: Floats, at_middles: Floats, sizes: SizeFunc
         stays = _clear(near, fine, fine_lengths)
         stays[stays] = _inside(pslg, fine[stays])
         fine, fine_lengths = fine[stays], fine_lengths[stays]
-    codes[lattice.near(near, CLEAR * wanted)] = 0
+    codes[lattice.near(near, CLEAR * wanted)[0]] = 0
     # The core keeps clear of finer nodes too.
     deep = codes.copy()
     deep[busy] = 0
@@ -115,12 +115,16 @@ def _fine(pslg: Pslg, sizes: SizeFunction, lattice: Lattice, codes: Codes) -> tu
         return np.zeros(0, np.int64), np.zeros(0, np.complex128), np.zeros(0)
     # Nodes inside of the outlines or beside them: no others have descendants inside.
     asked = codes != 0
-    asked[lattice.near(pslg.points, np.full(len(pslg.points), lattice.pitch))] = True
+    asked[lattice.near(pslg.points, np.full(len(pslg.points), lattice.pitch))[0]] = True
     asked = lattice.dilated(asked, 2)
     if sizes.field is None:
-        sources = np.zeros(len(codes), bool)
-        sources[lattice.near(sizes.sources, np.full(len(sizes.sources), lattice.pitch))] = True
-        asked &= lattice.dilated(sources, 1 + int(reach(sizes) / lattice.height))
+        nodes, of = lattice.near(sizes.sources, np.full(len(sizes.sources), lattice.pitch))
+        rings = (1 + reaches(sizes) / lattice.height).astype(np.int64)[of]
+        around = np.zeros(len(codes), bool)
+        for ring in range(int(rings.max(initial=0)), 0, -1):
+            around[nodes[rings == ring]] = True
+            around = lattice.dilated(around, 1)
+        asked &= around
     return finer(lattice, asked.nonzero()[0], sizes)
 
 

@@ -71,11 +71,13 @@ def flip_valences(vertices: Points, triangles: Ints, free: Bools) -> tuple[Ints,
     valence = np.where(free, np.bincount(triangles.ravel(), minlength=n), 0)  # no edge at a fixed vertex is flipped
     for done in range(FLIPS):
         one, other = _flippable(triangles, valence)
-        a, b, c = (np.roll(triangles, -k, axis=1).ravel()[one] for k in (1, 2, 0))
-        d = triangles.ravel()[other]
+        corners = triangles.ravel()
+        a, b = (corners[_next(one, k)] for k in (1, 2))
+        c, d = corners[one], corners[other]
         uneven = valence[a] + valence[b] - valence[c] - valence[d]
         first, second = np.stack([c, a, d], axis=1), np.stack([d, b, c], axis=1)
-        gains = (uneven >= UNEVEN) & free[c] & free[d] & ~narrower(vertices, first, FLAT) & ~narrower(vertices, second, FLAT)
+        gains = (uneven >= UNEVEN) & free[c] & free[d]
+        gains[gains] = ~(narrower(vertices, first[gains], FLAT) | narrower(vertices, second[gains], FLAT))
         if not gains.any():
             return triangles, done > 0
         # Of edges that have a vertex in common the most uneven one is flipped.
@@ -95,13 +97,18 @@ def _flippable(triangles: Ints, valence: Ints) -> tuple[Ints, Ints]:
 
     A corner is counted through the rows of triangles; the edge opposite it runs from the next one to that after.
     """
-    a, b = (np.roll(valence[triangles], -k, axis=1).ravel() for k in (1, 2))
-    corner = (a + b > 12).nonzero()[0]
-    a, b = (triangles.ravel()[corner - corner % 3 + (corner + k) % 3] for k in (1, 2))
+    valences = valence[triangles]
+    corner = (valences.sum(axis=1, keepdims=True) - valences > 12).ravel().nonzero()[0]
+    a, b = (triangles.ravel()[_next(corner, k)] for k in (1, 2))
     key = np.minimum(a, b) * len(valence) + np.maximum(a, b)
     order = np.argsort(key, kind="stable")
     twice = (np.diff(key[order]) == 0).nonzero()[0]
     return corner[order[twice]], corner[order[twice + 1]]
+
+
+def _next(corner: Ints, k: int) -> Ints:
+    """Return the k-th corner after each, in its triangle."""
+    return corner - corner % 3 + (corner + k) % 3
 
 
 def _neighbourhoods(vertices: Points, triangles: Ints, chosen: Bools) -> tuple[Ints, Ints, Ints]:
