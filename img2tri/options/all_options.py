@@ -74,9 +74,12 @@ TYPES: dict[str, Any] = {name: kind for group in GROUPS.values() for name, (kind
 OPTIONS: dict[str, Option] = {name: option for group in GROUPS.values() for name, (_, option) in group.items()}
 
 
+MAY_BE_NONE = {name for name, option in OPTIONS.items() if type(None) in get_args(TYPES[name]) or option.kind.endswith("None")}
+
+
 def takes_none(name: str) -> bool:
     """Whether None is a value of an option."""
-    return type(None) in get_args(TYPES[name]) or OPTIONS[name].kind.endswith("None")
+    return name in MAY_BE_NONE
 
 
 def checked(given: Mapping[str, Any], *, function: str = "mesh_image") -> MeshOptions:
