@@ -241,9 +241,10 @@ def _blend(shift: Floats, level: NDArray[np.int8], s: BoundedChains) -> Floats:
 def restore_swept_areas(s: BoundedChains, shift: Floats, wanted: Floats) -> Floats:
     """Shift each chain sideways until it sweeps the `wanted` area (c,), seen from the origin; return the new shifts."""
     rounding, missing, step = rounding_of_areas(s), np.empty(len(wanted)), np.empty(len(wanted))
+    once = list(s.batches()) if len(s.points) <= BATCH else None  # what is small is taken apart once
     for _ in range(AREA_ROUNDS):
         moved = shift.copy()
-        for chains, at, part in s.batches():
+        for chains, at, part in once or s.batches():
             (begin, end), chain, t = part.chains.ring_ends, part.chains.chain, shift[at]
             z = part.points + t * part.axis
             width = swept_widths(z, part)

@@ -107,7 +107,8 @@ class _Loop:
             stuck &= ~divisible
             if not (conflicting | stuck).any():
                 break
-            early = self._snapped_first(first, last)
+            early, doubtful = np.zeros((2, len(first)), bool), conflicting.nonzero()[0]
+            early[:, doubtful] = self._snapped_first(first[doubtful], last[doubtful])
             split = conflicting & divisible & ~early.any(axis=0)
             self.s = _split(s, first[split], last[split])
             ends = [end[stuck | (conflicting & snapped)] for end, snapped in zip((first, last), early, strict=True)]

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from img2tri.arrays import Floats, Ints, Points, cross
+from img2tri.arrays import Floats, Ints, Points, as_rows, cross
 from img2tri.shapes.simplify.simplification import Simplification
 
 MOST_OFFSET = 0.8  # of the tolerance: how far along the normal a vertex may be offset
@@ -51,23 +51,27 @@ class NormalOffsets:
     """
 
     def __init__(self, s: Simplification, *, snapped: bool = False) -> None:
-        first, last = s.chords
-        behind, ahead = np.full((2, len(s.offset)), -1)
-        ahead[first], behind[last] = last, first
-        self._begin, self._end = s.chains.ring_ends
-        behind[self._begin], ahead[self._end] = behind[self._end], ahead[self._begin]
+        # All by their rank among the kept entries, of which there are many times fewer than entries.
         kept = s.kept.nonzero()[0]
-        point, may = s.chains.indices[kept], np.zeros(len(s.offset), bool)
-        may[kept] = (behind[kept] >= 0) & (ahead[kept] >= 0) & (snapped | ~s.snapped[point]) & (s.dual_edges.vector[point] != 0)
-        between = may[kept] & may[behind[kept]] & may[ahead[kept]]
-        may[self._end] = False
-        chosen = may[kept]
+        first, last = kept.searchsorted(s.chains.first), kept.searchsorted(s.chains.last)
+        begin, end = first[s.chains.rings], last[s.chains.rings]
+        behind, ahead = np.arange(-1, len(kept) - 1), np.arange(1, len(kept) + 1)
+        behind[first], ahead[last] = -1, -1
+        behind[begin], ahead[end] = behind[end], ahead[begin]
+        point = s.chains.indices[kept]
+        may = (behind >= 0) & (ahead >= 0) & (snapped | ~s.snapped[point]) & (s.dual_edges.vector[point] != 0)
+        between = may & may[behind] & may[ahead]
+        moves = may[begin]
+        may[end] = False
+        chosen = may.nonzero()[0]
         self.at, point, self._inner = kept[chosen], point[chosen], between[chosen]
-        self.behind, self.ahead = behind[self.at], ahead[self.at]
-        self._second_behind, self._second_ahead = behind[self.behind], ahead[self.ahead]
+        behind_it, ahead_of_it = behind[chosen], ahead[chosen]
+        self.behind, self.ahead = kept[behind_it], kept[ahead_of_it]
+        self._second_behind, self._second_ahead = kept[behind[behind_it]], kept[ahead[ahead_of_it]]
+        self._begin, self._end = s.chains.ring_ends
         # The dense points they lie at, and those before and after these; a ring begins after the last but one of its entries.
         before = self.at - 1
-        before[np.searchsorted(self.at, self._begin[may[self._begin]])] = self._end[may[self._begin]] - 1
+        before[np.searchsorted(self.at, self._begin[moves])] = self._end[moves] - 1
         self._dense = s.dense
         self._points = self._dense[self.at], self._dense[before], self._dense[self.at + 1]
         self._snapped = s.snapped[point]
@@ -83,8 +87,9 @@ class NormalOffsets:
 
     def right(self, offset: Points) -> Points:
         """Return the unit directions (b,) to the right of the chain."""
-        right = -1j * (self._dense[self.ahead] + offset[self.ahead] - self._dense[self.behind] - offset[self.behind])
-        return np.asarray(right / np.maximum(np.abs(right), 1e-12))
+        right: Points = -1j * (self._dense[self.ahead] + offset[self.ahead] - self._dense[self.behind] - offset[self.behind])
+        as_rows(right)[:] *= (1 / np.maximum(np.abs(right), 1e-12))[:, None]
+        return right
 
     def shifted(self, offset: Points, step: Floats, tolerance: float) -> Points:
         """Return the offsets of all entries (k,) after steps (b,) to the right, as far as the tolerance allows these."""
