@@ -20,9 +20,10 @@ from img2tri.recipes.wanted_sizes import Sizes
 from img2tri.shapes.periodic.paired_outlines import FILLINGS, PeriodicPairs, find_periodic_pairs
 from img2tri.shapes.periodic.side_chains import cut_alike
 from img2tri.shapes.place.placement import place_on_pixel_sides, place_outlines
+from img2tri.shapes.simplify.parted_junctions import part_junctions
 from img2tri.shapes.simplify.set_back import set_back_near
 from img2tri.shapes.simplify.sharp_turns import sharp_turns
-from img2tri.shapes.simplify.simplification import Simplification, space_evenly
+from img2tri.shapes.simplify.simplification import LEAST_ANGLE, Simplification, space_evenly
 from img2tri.shapes.simplify.tangential_relocation import relocate, slide_limits
 from img2tri.shapes.simplify.tolerance import split_near
 from img2tri.shapes.simplify.vertex_offsets import offset_vertices
@@ -43,6 +44,7 @@ USUAL_SEGMENTS, SHORTEST_SHARE = 20, 1 / 3  # to a full turn by default; chords 
 LASTING = 15  # dense points, 11 to 15 px: what turns within fewer is a corner
 RESPACINGS = 2  # how often outlines are spaced anew around places that need shorter chords
 LEAST_PIECE = 1e-3  # px; outlines are never cut so fine, so that this is as good as 0
+WEDGE = 36.0  # degrees, at which chords may meet: a little more than any `min_angle`
 WAY_BACK = 0.7  # px: no point is farther from the middle of its dual edge, or of its block
 CONFETTI = 3000  # outlines: so many are seldom wanted
 ENDLESS = 0.02  # px: where segments of opposite sides get so short, each side would divide the other again and again
@@ -113,7 +115,7 @@ def conform(
     # Outlines of stretched pixels got theirs with the turning points; opposite sides have to have their vertices alike.
     if not stretched and not len(pairs.one):
         posted = posted | sharp_turns(outlines)
-    coarse = _spaced(outlines, dual_edges, pairs, sizes, tolerance, corners == "keep", keep_area, posted)
+    coarse = _spaced(outlines, dual_edges, pairs, sizes, tolerance, corners == "keep", keep_area, posted, WEDGE)
     if keep_area:
         coarse = with_areas_preserved(coarse, pairs, tolerance=tolerance)
     demands = _Demands(tolerance, min_angle, keep_area, interior, seed, node)
@@ -232,6 +234,7 @@ def _spaced(
     keep_corners: bool,
     keep_area: bool,
     posts: Bools | None = None,
+    least_angle: float = LEAST_ANGLE,
 ) -> Simplification:
     """Simplify the outlines to the lengths wanted, spaced evenly.
 
@@ -242,7 +245,8 @@ def _spaced(
     wanted = pairs.shared(limit_growth(_wanted(z, dual_edges, sizes), z, outlines.chains, sizes.gradation))
 
     def spaced(known: Simplification | None) -> Simplification:
-        new = space_evenly(outlines, dual_edges, spacing=wanted, keep_corners=keep_corners, posts=posts)
+        new = space_evenly(outlines, dual_edges, spacing=wanted, keep_corners=keep_corners, posts=posts, least_angle=least_angle)
+        new = part_junctions(new, spacing=wanted, tolerance=tolerance)
         new = offset_vertices(new, tolerance=tolerance, keep_area=keep_area)
         return pairs.enforce_tolerance(new, tolerance=tolerance, passed=None if len(pairs.one) else known)
 

@@ -19,6 +19,7 @@ from tuning import change
 from img2tri import mesh_image
 from img2tri.arrays import as_complex, as_rows
 from img2tri.raster.labels.segmentation import Segmentation
+from img2tri.recipes import conforming
 from img2tri.recipes.conforming import _spaced, trace_outlines
 from img2tri.recipes.preserved_areas import with_areas_preserved
 from img2tri.recipes.wanted_sizes import Sizes
@@ -41,6 +42,7 @@ LABELS = {
     "gear": gear(9, 110, 0.2).astype(int),
     "grains": specimens.polycrystal(90, 14, 3),
     "noise": RNG.integers(0, 2, (24, 27)),
+    "crystal": specimens.polycrystal(200, 250, 1),
     **{f"gear {k}": gear(9 + k, 130, 0.13 * k).astype(int) for k in range(5)},
     "specks": np.kron(RNG.integers(1, 4, (14, 14)), np.ones((4, 4), int)),
 }
@@ -300,6 +302,15 @@ def long_chords():
     return float(sum(len(s.chords[0]) for s in found)), max(map(area_error, found))
 
 
+def crystal():
+    """The number of chords of many grains, and the mean of 1 / their length."""
+    outlines, dual_edges = dense("crystal")
+    pairs = find_periodic_pairs(outlines, dual_edges, None)
+    s = _spaced(outlines, dual_edges, pairs, Sizes(7.0, 0.17), 0.5, False, True, least_angle=conforming.WEDGE)
+    first, last = s.chords
+    return float(len(first)), float((1 / np.abs(s.places[last] - s.places[first])).mean())
+
+
 def checkers():
     """The worst area of the regions of a small checkerboard (%)."""
     s = made_coarse(*traced(specimens.LABELS["checkerboard of two"]), 3.0, 0.5)
@@ -354,7 +365,7 @@ GROUPS = {
     "colours": lambda: (colours(),),
     **{name: (lambda name=name: simplified(name)) for name in ("blob", "gear", "grains", "noise", "specks")},
     "gears": gears, "ring": ring, "slid": slid, "sized": sized, "cells": lambda: (cells(),), "long": long_chords,
-    "checkers": checkers,
+    "checkers": checkers, "crystal": crystal,
     "tiny": tiny, "oblong": lambda: tiny((1.5, 1.0), 8), "wide": lambda: tiny((3.0, 1.0), 8),
     "nearly": lambda: tiny((1.15, 1.0), 5),
 }  # fmt: skip
@@ -367,7 +378,7 @@ REACHED = {
     "blob": (85, 0.03), "gear": (118, 0.12), "grains": (172, 0.115), "noise": (650, 0.25, 2.8), "specks": (540, 0.2),
     "gears": (745,), "ring": (1.1,), "slid": (0.5, 2.3), "sized": (0.03, 0.031, 31.5), "cells": (0.42,), "long": (120, 0.03),
     "tiny": (1460, 2.5, 0.06, 5.0), "oblong": (1140, 4.7, 0.08, 8.2), "wide": (1270, 2.6, 0.04, 20.5), "nearly": (580, 2.4, 0.06, 4.8),
-    "checkers": (5.6,),
+    "checkers": (5.6,), "crystal": (2110, 0.41),
 }  # fmt: skip
 
 MATTERS = [
@@ -380,7 +391,7 @@ MATTERS = [
     ("SMALLEST_WIDE", 2, "disc 10", 0), ("SLIGHT", 0, "walls", 0),
     ("FEWEST", 8, "walls", 0),
     ("MISFIT", 0.5, "blob", 1), ("MOST_OFFSET", 2, "gear", 0), ("RING", 0.5, "ring", 0), ("ROOM_TO_EVEN", 0.5, "gear", 0),
-    ("SHARP_TURN", 0.5, "grains", 0), ("GAP", 2, "specks", 0), ("LEANS", 0, "gears", 0), ("ENOUGH", 1.053, "gears", 0),
+    ("LEAST_ANGLE", 1.42, "grains", 0), ("GAP", 2, "specks", 0), ("LEANS", 0, "gears", 0), ("ENOUGH", 1.053, "gears", 0),
     ("SLIDE", 0.5, "slid", 1), ("STRAIGHT", 0.5, "slid", 1), ("EMPTY", 2, "sized", 0), ("OPPOSITE", 2, "sized", 0),
     ("EVERY", 2, "sized", 0), ("BESIDE", 0.5, "sized", 1), ("PASSES", 0.5, "sized", 2),
     # Where regions meet, chords are few or pixels many: tiny maps, small grains, discs in few chords.
@@ -395,7 +406,7 @@ MATTERS = [
     ("LEAST_STEP", 2, "disc 60", 0), ("ARC_BLUR", 2, "blob", 1),
     ("SHORTEST_NARROW", 2, "tiny", 3),
     ("MOST_SHIFT", 0.5, "checkers", 0), ("BLUNT", 0, "checkers", 0), ("INNER", 0, "wide", 1), ("UNSURE", 0, "wide", 1),
-    ("BASE", 0.5, "disc 60", 0),
+    ("BASE", 0.5, "disc 60", 0), ("WEDGE", 1.4, "crystal", 0), ("JUNCTIONS_APART", 0, "crystal", 0), ("PLENTY", 100, "crystal", 0),
 ]  # fmt: skip
 
 

@@ -239,7 +239,7 @@ def _blend(shift: Floats, level: NDArray[np.int8], s: BoundedChains) -> Floats:
 
 
 def restore_swept_areas(s: BoundedChains, shift: Floats, wanted: Floats) -> Floats:
-    """Shift each chain sideways until it sweeps the `wanted` area (c,), seen from the origin; return the new shifts."""
+    """Shift each chain sideways until it sweeps the `wanted` area (c,), seen from the origin, if not NaN; return the new shifts."""
     rounding, missing, step = rounding_of_areas(s), np.empty(len(wanted)), np.empty(len(wanted))
     once = list(s.batches()) if len(s.points) <= BATCH else None  # what is small is taken apart once
     for _ in range(AREA_ROUNDS):
@@ -248,7 +248,7 @@ def restore_swept_areas(s: BoundedChains, shift: Floats, wanted: Floats) -> Floa
             (begin, end), chain, t = part.chains.ring_ends, part.chains.chain, shift[at]
             z = part.points + t * part.axis
             width = swept_widths(z, part)
-            missing[chains] = wanted[chains] - _swept(z, part.chains)
+            missing[chains] = np.nan_to_num(wanted[chains] - _swept(z, part.chains))
             # A point at one of its bounds may still go back.
             free = np.where(missing[chains][chain] * width > 0, t < part.high - AT_BOUND, part.low + AT_BOUND < t)
             gain = np.bincount(chain, np.abs(width) * free, len(part.chains.rings))

@@ -13,9 +13,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from img2tri.arrays import Floats, Ints, Points, as_complex, cross
+from img2tri.arrays import Bools, Floats, Ints, Points, as_complex, cross
 from img2tri.shapes.place.area_exchange import exchange_areas
-from img2tri.shapes.place.constrained_smoothing import BoundedChains, restore_swept_areas, swept_areas, widest_fitting_spline
+from img2tri.shapes.place.constrained_smoothing import (
+    SHORTEST_NARROW,
+    SHORTEST_WIDE,
+    BoundedChains,
+    restore_swept_areas,
+    swept_areas,
+    widest_fitting_spline,
+)
 from img2tri.shapes.place.known_crossings import OutlineLevel, known_crossings
 from img2tri.shapes.place.node_placement import bend_to_nodes, meeting_places, open_wedges
 from img2tri.shapes.place.outline_corners import find_corners
@@ -24,6 +31,7 @@ from img2tri.shapes.trace.crack_edges import CrackEdges, cut_chains
 from img2tri.shapes.trace.dual_edges import BOUND, DualEdges, lay_out, pixel_areas
 from img2tri.types import ColourMix, Frame, Outlines
 
+PLENTY = 30  # points of the long outlines of a region: so many spare short ones
 MIXED_CROSSINGS = 2  # crossings to either side of a corner whose pixels may be mixed of more than two sides
 
 
@@ -74,7 +82,7 @@ def place_outlines(
     bounded = replace(bounded, points=np.where(dual_edges.slides, bounded.points, nodes), axis=dual_edges.vector)
     shift = bend_to_nodes(bounded, np.where(dual_edges.slides, shift, 0.0), ends, dual_edges.bounds != 0)
     wanted = _wanted_areas(bounded, dual_edges, slack)
-    shift = restore_swept_areas(bounded, shift, wanted)
+    shift = restore_swept_areas(bounded, shift, np.where(_spared(bounded, *dual_edges.regions), np.nan, wanted))
     areas, free = pixel_areas(dual_edges), bounded
     if dual_edges.is_junction.any():
         bounded, shift = open_wedges(bounded, shift, dual_edges.blunt_middle, dual_edges.is_junction, dual_edges.bounds)
@@ -159,6 +167,17 @@ def _wanted_areas(s: BoundedChains, dual_edges: DualEdges, slack: Floats) -> Flo
     detour = cross(corner[one] - s.points[one], s.points[other] - s.points[one]) / 2
     unknown = (slack[one] == BOUND) & (slack[other] == BOUND) & (np.diff(dual_edges.chains.chain) == 0)
     return np.asarray(swept_areas(s.points, s) + np.bincount(dual_edges.chains.chain[:-1], detour * unknown, len(dual_edges.chains.rings)))
+
+
+def _spared(s: BoundedChains, left: Ints, right: Ints) -> Bools:
+    """Tell which chains (c,) are too short to be smoothed, between regions that have plenty of long outlines.
+
+    For their own area they would be bent all the way to their bounds; the regions get it by their other chains, see `area_exchange`.
+    """
+    points = np.diff(s.chains.starts)
+    short = ~s.chains.rings & (points <= SHORTEST_NARROW)
+    others = np.bincount(np.concatenate([left, right]), np.tile(np.where(points > SHORTEST_WIDE, points, 0), 2))
+    return np.asarray(short & (others[left] >= PLENTY) & (others[right] >= PLENTY))
 
 
 def place_on_pixel_sides(crack_edges: CrackEdges, frame: Frame) -> tuple[Outlines, DualEdges]:

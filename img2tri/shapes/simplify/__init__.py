@@ -4,6 +4,7 @@ In the order of the flow:
 
 simplification         A simplification: which dense points are kept as vertices, and how far each is offset; evenly spaced at first.
 sharp_turns            Where an outline turns sharply without a corner: a vertex there spares short chords.
+parted_junctions       Junctions nearer to each other than chords should be short, moved apart.
 vertex_offsets         Vertices offset along the normal, so that few chords approximate the outline.
 tolerance              Chords split until each is within the tolerance, clear of the others, and not too sharp.
 clearance              Which chords come too near to each other, or meet at too sharp an angle.

@@ -18,7 +18,6 @@ from img2tri.shapes.simplify.simplification import Simplification
 GAP = 0.25  # px, the least distance kept between chords, over their deviations
 CHORDS_AT_ONCE = 1 << 12  # whose pairs are looked at together: what lies near is in the cache
 FEW_BOXES = 1 << 16  # pairs of boxes: fewer are all looked at at once
-SHARP_TURN = np.cos(np.radians(50.0))  # chords that meet at less than this angle are too sharp
 
 
 def sharp_chords(s: Simplification, first: Ints, last: Ints, fresh: Bools) -> Bools:
@@ -39,7 +38,7 @@ def sharp_chords(s: Simplification, first: Ints, last: Ints, fresh: Bools) -> Bo
         if not len(one):
             break
         other = one + step
-        narrow = (heading[one] * heading[other].conj()).real > SHARP_TURN * length[one] * length[other]
+        narrow = (heading[one] * heading[other].conj()).real > np.cos(np.radians(s.least_angle)) * length[one] * length[other]
         sharp[chord[one[narrow]]] = sharp[chord[other[narrow]]] = True
     return sharp
 

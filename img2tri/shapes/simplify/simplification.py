@@ -19,6 +19,7 @@ from img2tri.shapes.trace.dual_edges import DualEdges
 from img2tri.types import Outlines
 
 SAME_PLACE = 1e-6  # px, places that differ by less are the same, up to rounding
+LEAST_ANGLE = 50.0  # degrees, at which chords may meet
 RING = 8  # a ring keeps at least so many vertices, or all its crossings
 
 
@@ -39,7 +40,9 @@ class Simplification:
     offset
         (k,) complex, how far each vertex lies from its dense point.
     snapped
-        (n,) bool, the points that went back towards the middle of their crack edges.
+        (n,) bool, the points that went back towards the middle of their crack edges, and junctions moved within their block.
+    least_angle
+        In degrees: chords that meet at less are too sharp.
     """
 
     outlines: Outlines
@@ -49,6 +52,7 @@ class Simplification:
     kept: Bools
     offset: Points
     snapped: Bools
+    least_angle: float
 
     @property
     def chains(self) -> ChainIndex:
@@ -89,7 +93,13 @@ class Simplification:
 
 
 def space_evenly(
-    outlines: Outlines, dual_edges: DualEdges, *, spacing: float | Floats, keep_corners: bool = False, posts: Bools | None = None
+    outlines: Outlines,
+    dual_edges: DualEdges,
+    *,
+    spacing: float | Floats,
+    keep_corners: bool = False,
+    posts: Bools | None = None,
+    least_angle: float = LEAST_ANGLE,
 ) -> Simplification:
     """Keep vertices along each chain, `spacing` px apart: one length, or one at each entry (k,).
 
@@ -126,4 +136,4 @@ def space_evenly(
     kept[at[inner]] = True
     kept[first] = kept[last] = True
     pinned = dual_edges.is_corner if keep_corners else np.zeros(n, bool)
-    return Simplification(outlines, dual_edges, z, pinned, kept, offset, np.zeros(n, bool))
+    return Simplification(outlines, dual_edges, z, pinned, kept, offset, np.zeros(n, bool), least_angle)
