@@ -45,16 +45,16 @@ REASONS = {
     # Rounds of what ends by itself before, or ends in an error that says so, or in the best so far.
     "FINER_MATCHES FILLINGS FAIR_ROUNDS BLUNT_ROUNDS RETURNS LEVELS MOST_ATTEMPTS ROUNDS": "stop",
     # They keep a division or a step from becoming too large where there is nothing to divide by.
-    "STEEP LEAST_WIDTH SLANT SOLVABLE FLATTEST NUDGE LEAST_PIECE": "guard",
+    "STEEP LEAST_WIDTH SLANT SOLVABLE FLATTEST NUDGE BY_CHANCE LEAST_PIECE": "guard",
     # Mathematics, or a number of someone else's.
-    "RATIO ROW TURN DEFECT GOLDEN PLASTIC GOLDEN_RATIO NODE SUPER TRIANGLE STEPS _ROOT _POSITIVE _UNIT _FROM_ONE": "given",
+    "RATIO ROW TURN DEFECT GOLDEN_RATIO NODE SUPER TRIANGLE STEPS _ROOT _POSITIVE _UNIT _FROM_ONE": "given",
     # Defaults and limits that users are told; another value is another promise.
     "USUAL_TRIANGLES USUAL_SEGMENTS SHORTEST_SHARE MOST_TRIANGLES CONFETTI AREA_TOLERANCE SMALL_AREA PLACES PRINTED SAME_LENGTH "
     "LEAST_JACOBIAN DEFAULT_SHORTEST DEFAULT_LONGEST MOST_AREA_ERROR FEW_PIXELS SAMPLE_STEP": "said",
     # How blocks are joined: tried in turn, and what comes of it is checked, so that a wrong one ends in a refusal, not in a bad mesh.
     # Chosen on the specimens at every place (tests/tiles/test_every_place.py); not shown one by one.
     "MARGIN_EDGES SMOOTHED LEAST_BLOCK GROSS MARGIN_SCALES NEAR WIDTHS SEGMENT_LENGTHS EATEN REPAIRS PATCHES RINGS LOOSE_CLEARANCE SAMPLES "
-    "ALIKE APART AROUND AT_FRAME COMPARED LEAST_RING ODD POSTED "
+    "ALIKE APART AROUND AT_FRAME COMPARED LEAST_RING ODD POSTED REPRESENTED "
     "WALLED STUBS FILLED MET LOST TAKEN CORE REACH BENT CORNER BEHIND SHARP POCKET EVENINGS": "joints",
     "FAIRINGS FAIR": "without them worst angles of blobs and gears rise by a degree in the mean, and blob(512) of the ratchet loses .7",
     "WAY_BACK": "half the diagonal of a pixel, .707: no way back to a middle is longer",

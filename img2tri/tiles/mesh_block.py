@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import Any, cast
 
 import numpy as np
 
-from img2tri.arrays import Bools, Floats, Ints, Points, as_complex, as_rows, runs
-from img2tri.certificate.outline_distance import SAMPLE_STEP, SegmentSet
+from img2tri.arrays import Bools, Ints, Points, as_complex, as_rows
 from img2tri.errors import Img2triError, MeshError
 from img2tri.options.all_options import MeshOptions, of
 from img2tri.options.mesh_options import FillOptions, OutlineOptions, SizeOptions
@@ -22,13 +20,13 @@ from img2tri.tiles.outline_posts import find_posts
 from img2tri.tiles.piece_files import Lost, PieceStore, load_piece
 from img2tri.tiles.seams.both_meshes import Territory
 from img2tri.tiles.seams.join_blocks import merge
+from img2tri.tiles.seams.outline_check import DenseOutlines
 from img2tri.tiles.seams.piece_seams import Piece, SeamError, join_pieces
 from img2tri.tiles.window_regions import WindowRegions
 from img2tri.triangles.min_angle_tangents import smallest_angles
 from img2tri.triangles.tools.topology import curve_edges
 from img2tri.types import Frame, Outlines
 
-AT_ONCE = 10_000  # edges whose distances are measured at once, which bounds the memory of that
 GROSS = 1.0  # px beside twice the tolerance: what no outline of the mesh is off those of the image
 POSTED = 0.75  # margins: how far from borders of blocks posts of outlines are
 MARGIN_SCALES = (1, 2, 4)  # of the margin: where pieces do not fit, more is looked at and replaced
@@ -73,17 +71,17 @@ def _fitting(plan: Plan, zones: WindowRegions, store: PieceStore, cell: Cell) ->
         rows, columns = plan.window(cell, scale * plan.margin + SMOOTHED)
         window = zones(rows, columns)
         mesh, outlines = window_mesh(window, plan, rows, columns)
-        off, territory = _measure(outlines), plan.territory(cell, scale)
+        territory = plan.territory(cell, scale)
         parts = [_near(piece, territory) for piece, _ in loaded]
         finished = join_pieces([piece for piece, _ in parts])
         try:
-            piece, replaced = merge(mesh, finished, territory, off, tolerance=within, min_angle=plan.options["min_angle"])
-            distance = _distance(piece, off)
+            piece, replaced = merge(mesh, finished, territory, outlines, tolerance=within, min_angle=plan.options["min_angle"])
+            distance = _distance(piece, outlines)
             if distance > GROSS + 2 * within:
                 raise SeamError(f"an edge of the mesh is {distance:.3g} px off the outlines of the image")
         except SeamError as error:
             problem = SeamError(str(error), error.at)  # without its traceback, which would hold this window while the next is meshed
-            del window, mesh, outlines, off, parts, finished
+            del window, mesh, outlines, parts, finished
             continue
         lost: Lost = {}
         first = 0
@@ -139,32 +137,13 @@ def _pixels(window: Segmentation, plan: Plan, cell: Cell, rows: slice, columns: 
     return {"pixels": pixels, "euler": pixels - int(across.sum()) - int(down.sum()) + quads}
 
 
-def _measure(outlines: tuple[Points, Outlines] | None) -> Callable[[Points, Ints], Floats]:
-    """Return a function that tells how far edges are from dense outlines, px."""
-    if outlines is None:
-        return lambda _, edges: np.zeros(len(edges))
-    dense = SegmentSet(as_rows(outlines[0]), outlines[1].segments[0])
-
-    def off(z: Points, edges: Ints) -> Floats:
-        found = [few_off(*z[edges[first : first + AT_ONCE]].T) for first in range(0, len(edges), AT_ONCE)]
-        return np.concatenate(found) if found else np.zeros(0)
-
-    def few_off(a: Points, b: Points) -> Floats:
-        count = np.maximum(np.ceil(np.abs(b - a) / SAMPLE_STEP).astype(np.int64), 1) + 1
-        which, place = runs(count)
-        distance = dense.distance(as_rows(a[which] + (place / (count - 1)[which]) * (b - a)[which]))
-        return np.maximum.reduceat(distance, np.cumsum(count) - count)
-
-    return off
-
-
-def _distance(piece: Piece, off: Callable[[Points, Ints], Floats]) -> float:
+def _distance(piece: Piece, outlines: DenseOutlines) -> float:
     """How far the boundary and interface edges of a piece are from the outlines of the image, px; edges of the seam are none."""
     n = len(piece.vertices)
     edges = curve_edges(piece.triangles, piece.regions) if len(piece.triangles) else np.zeros((0, 2), np.int64)
     inner = np.sort(piece.seam, axis=1)
     edges = edges[~np.isin(edges.min(axis=1) * n + edges.max(axis=1), inner[:, 0] * n + inner[:, 1])]
-    return float(off(piece.vertices, edges).max(initial=0.0))
+    return float(outlines.off(piece.vertices, edges).max(initial=0.0))
 
 
 def plan_world(plan: Plan, places: Points) -> Points:
@@ -173,11 +152,11 @@ def plan_world(plan: Plan, places: Points) -> Points:
     return np.asarray(world[:, 0] + 1j * world[:, 1])
 
 
-def window_mesh(zones: Segmentation, plan: Plan, rows: slice, columns: slice) -> tuple[Piece, tuple[Points, Outlines] | None]:
-    """Mesh a window, and return the mesh in the plane of the whole image, with its dense outlines; no outlines where nothing is meshed."""
+def window_mesh(zones: Segmentation, plan: Plan, rows: slice, columns: slice) -> tuple[Piece, DenseOutlines]:
+    """Mesh a window, and return the mesh in the plane of the whole image, with its dense outlines."""
     whole, o = plan.frame, cast(MeshOptions, plan.options)
     if zones.background is not None and not (zones.labels != zones.background).any():
-        return Piece.empty(), None
+        return Piece.empty(), DenseOutlines(np.zeros(0, np.complex128), np.zeros((0, 2), np.int64))
     frame = Frame(zones.labels.shape, whole.spacing, (0.0, 0.0), whole.upward)
     outlines, dual_edges = trace_outlines(zones, frame, connectivity=o["connectivity"], **of(OutlineOptions, o))
     lengths = of(SizeOptions, o)
@@ -197,7 +176,7 @@ def window_mesh(zones: Segmentation, plan: Plan, rows: slice, columns: slice) ->
     outlines = made.outlines or outlines
     none = np.zeros((0, 2), np.int64)
     piece = Piece(as_complex(made.vertices) + shift, made.triangles, outlines.labels[made.regions], none, none[:, 0])
-    return piece, (as_complex(outlines.points) + shift, outlines)
+    return piece, DenseOutlines(as_complex(outlines.points) + shift, outlines.segments[0])
 
 
 def _posts(plan: Plan, rows: slice, columns: slice, shift: complex, outlines: Outlines) -> Bools:

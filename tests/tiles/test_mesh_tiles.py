@@ -261,9 +261,10 @@ def test_every_kind_of_source_gives_the_same_mesh(tmp_path):
     assert len(found) == 1
 
 
-def test_windows_make_nearly_the_same_mesh_around_their_common_border(monkeypatch):
+@pytest.mark.parametrize("seed", [1, 2])
+def test_windows_make_nearly_the_same_mesh_around_their_common_border(seed, monkeypatch):
     monkeypatch.setattr(block_plan, "BLOCK_SIDE", 256)
-    mask, edge = blobs(512, 12.0, seed=3), 4.0
+    mask, edge = blobs(512, 12.0, seed=seed), 4.0
     zones = Segmentation(mask, 0)
     plan = block_plan.planned(Frame(mask.shape), dict(checked({"edge_length": edge}, function="mesh_tiles")), int(mask.sum()))
     found = []
@@ -275,7 +276,7 @@ def test_windows_make_nearly_the_same_mesh_around_their_common_border(monkeypatc
     one, other = found
     alike = KDTree(other).query(one)[0] < ALIKE[0] * edge
     assert len(alike) > 100
-    assert alike.mean() > 0.99  # .96 with points of the lattice put off by their order, less without posts or with lattices of their own
+    assert alike.all()  # .86 where valences are repaired in the order of numbers
 
 
 def test_no_seam_is_to_be_seen():

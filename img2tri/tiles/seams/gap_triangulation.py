@@ -18,7 +18,7 @@ from img2tri.triangles.generate.constrained_delaunay import SUPER, PslgError, in
 from img2tri.triangles.generate.pslg import Pslg
 from img2tri.triangles.generate.quality_smoothing import smooth, smooth_and_raise
 from img2tri.triangles.generate.ruppert_refinement import refine_locally
-from img2tri.triangles.generate.valence_repair import repair_valences
+from img2tri.triangles.generate.valence_repair import flip_valences, repair_valences
 from img2tri.triangles.min_angle_tangents import narrower
 
 REPAIRS = 2  # rounds of smoothing, valence repair and triangulation
@@ -156,7 +156,7 @@ def _codes(places: Points, triangles: Ints, segments: Ints, walls: GapWalls) -> 
 def improved(
     z: Points, triangles: Ints, codes: Ints, is_gap: Bools, fixed: Bools, closed: Ints, min_angle: float
 ) -> tuple[Points, Ints, Ints]:
-    """Smooth a gap and what is around it, and refine where angles stay too small.
+    """Flip edges in a gap and what is around it, smooth it, and refine where angles stay too small.
 
     Parameters
     ----------
@@ -183,10 +183,10 @@ def improved(
     still = left != right  # outlines, the border of the zone and of the mesh
     free = ~np.append(fixed, np.zeros(n - len(fixed), bool))[inside]
     free[sides.low[still]] = free[sides.high[still]] = False
-    for _ in range(2):
-        places = smooth_and_raise(places, local, free)
-    z = z.copy()
-    z[inside] = places
+    local, _ = flip_valences(places, local, free)
+    places = smooth_and_raise(places, local, free)
+    z, triangles = z.copy(), triangles.copy()
+    z[inside], triangles[zone] = places, inside[local]
     return refined(z, triangles, codes, zone, closed, min_angle)
 
 

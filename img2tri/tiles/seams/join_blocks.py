@@ -17,6 +17,7 @@ from img2tri.tiles.seams.both_meshes import Both, Territory, together
 from img2tri.tiles.seams.gap_attempts import ALIKE, EATEN, MOST_ATTEMPTS, SEGMENT_LENGTHS, WIDTHS, Attempt
 from img2tri.tiles.seams.gap_triangulation import Gap, GapWalls, gap_filled, improved, longest_sides
 from img2tri.tiles.seams.joint_check import check_joint
+from img2tri.tiles.seams.outline_check import DenseOutlines, check_outlines
 from img2tri.tiles.seams.outline_splices import Ways, splice
 from img2tri.tiles.seams.piece_seams import Piece, SeamError, Sides, evened, find_stubs, taken
 from img2tri.triangles.min_angle_tangents import smallest_angles
@@ -30,7 +31,7 @@ CORE = 1.5  # margins: a triangle of the new mesh farther from finished pieces a
 
 
 def merge(
-    mesh: Piece, finished: Piece, territory: Territory, off: Callable[[Points, Ints], Floats], *, tolerance: float, min_angle: float
+    mesh: Piece, finished: Piece, territory: Territory, outlines: DenseOutlines, *, tolerance: float, min_angle: float
 ) -> tuple[Piece, Bools]:
     """Return what a new mesh adds to finished pieces, and which of their triangles (m,) it replaces, which are few.
 
@@ -42,8 +43,8 @@ def merge(
         The pieces it must fit, joined.
     territory
         Where it may take triangles.
-    off
-        Function of places and edges between them, that returns how far each edge is from the outlines of the image, px.
+    outlines
+        Of the image.
     tolerance, min_angle
         As promised of the whole mesh; px, degrees.
 
@@ -56,7 +57,7 @@ def merge(
     outside = territory.outside(mesh.vertices)
     reached = max(0.0, -float(territory.outside(finished.vertices).min(initial=0.0)))
     core = np.asarray((outside < -reached - CORE * territory.margin)[mesh.triangles].all(axis=1))
-    joint = partial(_joined, finished=finished, labels=labels, off=off, tolerance=tolerance, min_angle=min_angle)
+    joint = partial(_joined, finished=finished, labels=labels, outlines=outlines, tolerance=tolerance, min_angle=min_angle)
     attempt = Attempt(0, [], TAKEN * territory.margin)
     while True:
         try:
@@ -89,7 +90,7 @@ def _joined(
     labels: Ints,
     territory: Territory,
     attempt: Attempt,
-    off: Callable[[Points, Ints], Floats],
+    outlines: DenseOutlines,
     tolerance: float,
     min_angle: float,
 ) -> tuple[Piece, Bools]:
@@ -99,7 +100,7 @@ def _joined(
     far = territory.outside(finished.vertices)[finished.triangles].max(axis=1) > LOST * territory.margin
     lost = attempt.near(territory.margin * np.asarray(EATEN), middle) & ~far
     both = together(band, finished, lost, labels, territory, cut, attempt.of(ALIKE, band.vertices))
-    return _merged(both, labels, territory, attempt, off, tolerance, min_angle), lost
+    return _merged(both, labels, territory, attempt, outlines, tolerance, min_angle), lost
 
 
 def _merged(
@@ -107,7 +108,7 @@ def _merged(
     labels: Ints,
     territory: Territory,
     attempt: Attempt,
-    off: Callable[[Points, Ints], Floats],
+    outlines: DenseOutlines,
     tolerance: float,
     min_angle: float,
 ) -> Piece:
@@ -133,7 +134,7 @@ def _merged(
         own = new[~both.moved[new].any(axis=1)]
         least = min(min_angle, float(smallest_angles(both.z, own).min(initial=180.0)))
         z, triangles, code = improved(z, triangles, code, touched, fixed, np.concatenate([both.border, both.cut]), least - 1e-9)
-        _check_outlines(z, triangles, code, both, territory, off, tolerance)
+        check_outlines(z, triangles, code, both, MET * territory.margin, outlines, tolerance)
     near = rim & (both.outside[both.border].max(axis=1) < MET * territory.margin)
     lonely = ~_met(both.border[near], triangles, len(z))
     if lonely.any():
@@ -150,38 +151,6 @@ def _merged(
     piece = taken(z, triangles, labels[code - 1], takes, met, labels[both.own[goes_on] - 1])
     check_joint(piece, both, labels, MET * territory.margin)
     return piece
-
-
-def _check_outlines(
-    z: Points, triangles: Ints, code: Ints, both: Both, territory: Territory, off: Callable[[Points, Ints], Floats], tolerance: float
-) -> None:
-    """Refuse edges along new outlines that are off those of the image, unless the new mesh is off there by itself."""
-    edges = _outline_edges(triangles, code, len(z))
-    edges = edges[territory.outside(z[edges]).max(axis=1) < MET * territory.margin]
-    known = _outline_edges(both.new, both.new_codes, len(z))
-    known = known[both.outside[known].max(axis=1) < MET * territory.margin]
-    known = _other_than(known[~both.moved[known].any(axis=1)], both.cut, len(z))
-    for old in (known, both.border, both.cut):
-        edges = _other_than(edges, old, len(z))
-    if len(edges):
-        distance = off(z, edges)
-        allowed = max(tolerance, float(off(both.z, known).max(initial=0.0)) if distance.max() > tolerance else 0.0)
-        if (distance > allowed * (1 + 1e-9)).any():
-            raise SeamError("an outline is off that of the image", z[edges[distance > allowed]].mean(axis=1))
-
-
-def _outline_edges(triangles: Ints, code: Ints, n: int) -> Ints:
-    """Return the edges (k, 2) between different regions, and between a region and nothing."""
-    sides = Sides.of(triangles, n)
-    left, right = sides.codes(code)
-    edges: Ints = np.stack([sides.low, sides.high], axis=1)[left != right]
-    return edges
-
-
-def _other_than(edges: Ints, others: Ints, n: int) -> Ints:
-    """Return those of the edges that are none of others, whichever way round."""
-    kept: Ints = edges[~np.isin(edges.min(axis=1) * n + edges.max(axis=1), others.min(axis=1) * n + others.max(axis=1))]
-    return kept
 
 
 def _met(border: Ints, triangles: Ints, n: int) -> Bools:

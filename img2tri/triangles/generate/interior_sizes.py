@@ -56,8 +56,6 @@ class SizeFunction:
         if self.field is not None:
             wanted = np.minimum(wanted, self.field(as_rows(points)))
         # Least of length + gradation * distance over all sources, found as the nearest source among those of about equal length.
-        if len(points) * len(self.sources) <= FEW_PAIRS:
-            return self._least(wanted, points)
         for sources, lengths in self._classes:
             least = lengths.min()
             open_ = (wanted > least).nonzero()[0]
@@ -67,16 +65,6 @@ class SizeFunction:
             found = (nearest < len(lengths)).nonzero()[0]
             open_, nearest = open_[found], nearest[found]
             wanted[open_] = np.minimum(wanted[open_], lengths[nearest] + self.gradation * distance[found])
-        return wanted
-
-    def _least(self, wanted: Floats, points: Points) -> Floats:
-        """Return what `at` does for few points: all distances at once."""
-        square, done = _squares(points, np.concatenate([self.sources[:0], *(sources.places for sources, _ in self._classes)])), 0
-        for _, lengths in self._classes:
-            part = square[:, done : done + len(lengths)]
-            nearest = part.argmin(axis=1)
-            wanted = np.minimum(wanted, lengths[nearest] + self.gradation * np.sqrt(part[np.arange(len(part)), nearest]))
-            done += len(lengths)
         return wanted
 
     @cached_property
@@ -95,32 +83,24 @@ class _Sources:
     """Places of which the nearest is asked for: of few by all distances, of many by a search tree."""
 
     def __init__(self, places: Points) -> None:
-        self.places = places
+        self._places = places
 
     @cached_property
     def _tree(self) -> cKDTree:
         from scipy.spatial import cKDTree
 
-        return cKDTree(as_rows(self.places))
+        return cKDTree(as_rows(self._places))
 
     def nearest(self, points: Points, reach: float) -> tuple[Floats, Ints]:
         """Return what `nearest_of` does."""
-        count = len(self.places)
+        count = len(self._places)
         if not count or count * len(points) > FEW_PAIRS:
             distance, nearest = self._tree.query(as_rows(points), distance_upper_bound=reach)
             return np.asarray(distance, np.float64), np.asarray(nearest, np.int64)
-        square = _squares(points, self.places)
+        across, up = (points.real[:, None] - self._places.real), (points.imag[:, None] - self._places.imag)
+        with np.errstate(over="ignore"):  # what is too far to be squared is out of reach, as it is for a search tree
+            square = across * across + up * up
         nearest = square.argmin(axis=1)
         distance = np.sqrt(square[np.arange(len(points)), nearest])
         near = distance < reach
         return np.where(near, distance, np.inf), np.where(near, nearest, count)
-
-
-def _squares(points: Points, sources: Points) -> Floats:
-    """Return the squares (n, k) of the distances of points to sources."""
-    across, up = np.subtract.outer(points.real, sources.real), np.subtract.outer(points.imag, sources.imag)
-    with np.errstate(over="ignore"):  # what is too far to be squared is out of reach, as it is for a search tree
-        across *= across
-        up *= up
-        across += up
-    return across

@@ -25,7 +25,7 @@ from img2tri.triangles.min_angle_tangents import min_angle_tangents
 CLEAR = 0.66  # lattice nodes nearer to an outline or apex than this times the wanted length are dropped
 WITHIN = 0.3  # of the shorter part beside it: how far a point slides in which a segment was divided
 NUDGE = 1e-7  # of the length wanted there: how far free points are put off
-GOLDEN, PLASTIC = 0.618, 0.7549  # of a turn, for each pitch to the right and up; any odd parts do
+BY_CHANCE = 7.13  # turns: their directions are as good as by chance from one to the next
 
 
 Settle = Callable[[Floats], Floats]
@@ -105,7 +105,7 @@ def lay_strip(pslg: Pslg, at_points: Floats, at_middles: Floats, sizes: SizeFunc
     # from where a point lies, so that windows of one image, which have other points far away, triangulate it alike.
     lengths = np.concatenate([wanted[len(pslg.points) :], np.full(len(between), lattice.pitch), fine_lengths])
     way = (free - lattice.node) / lattice.pitch
-    free += NUDGE * lengths * np.exp(2j * np.pi * (GOLDEN * way.real + PLASTIC * way.imag))
+    free += NUDGE * lengths * np.exp(2j * np.pi * BY_CHANCE * np.sin(3 * way.real + 5 * way.imag))
     return Strip(constraints, len(pslg.segments), free, core, rim)
 
 

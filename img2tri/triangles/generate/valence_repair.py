@@ -21,6 +21,9 @@ Delaunay triangulation finds it, as it is better only once its vertices have mov
          \ /                   \|/
           5                     6
 
+Which vertex or edge comes first of several beside each other follows from places, never from numbers: so no mesh depends on what else
+there is in the image.
+
 Valences are made even by flips, collapses and splits since W. H. Frey and D. A. Field, Mesh relaxation: a new technique for improving
 triangulations, Int. J. Numer. Methods Eng. 31, 1991, https://doi.org/10.1002/nme.1620310607.
 """
@@ -80,12 +83,13 @@ def flip_valences(vertices: Points, triangles: Ints, free: Bools) -> tuple[Ints,
         gains[gains] = ~(narrower(vertices, first[gains], FLAT) | narrower(vertices, second[gains], FLAT))
         if not gains.any():
             return triangles, done > 0
-        # Of edges that have a vertex in common the most uneven one is flipped.
-        rank = np.argsort(np.argsort(np.where(gains, -uneven, 0), kind="stable"))
+        one, other, first, second, a, b, c, d, uneven = (each[gains] for each in (one, other, first, second, a, b, c, d, uneven))
+        # Of edges that have a vertex in common the most uneven one is flipped; of these that whose new edge is shortest.
+        rank = np.argsort(np.lexsort((np.abs(vertices[d] - vertices[c]), -uneven)))
         least = np.full(n, len(rank))
         for corner in (a, b, c, d):
-            np.minimum.at(least, corner[gains], rank[gains])
-        flipped = gains & (np.min([least[corner] for corner in (a, b, c, d)], axis=0) == rank)
+            np.minimum.at(least, corner, rank)
+        flipped = np.min([least[corner] for corner in (a, b, c, d)], axis=0) == rank
         triangles[one[flipped] // 3], triangles[other[flipped] // 3] = first[flipped], second[flipped]
         for corner, more in ((a, -1), (b, -1), (c, 1), (d, 1)):
             valence[corner[flipped]] += more
@@ -114,18 +118,22 @@ def _next(corner: Ints, k: int) -> Ints:
 def _neighbourhoods(vertices: Points, triangles: Ints, chosen: Bools) -> tuple[Ints, Ints, Ints]:
     """Return the neighbours of chosen vertices, counter-clockwise: entries (centre, neighbour), and the first entry of each centre.
 
-    Of vertices that have a neighbour in common, or are neighbours, only that of lowest number is kept, so that each may be changed
-    without regard to others.
+    Of vertices that have a neighbour in common, or are neighbours, only that with its neighbours nearest to it is kept, so that each may
+    be changed without regard to others.
     """
     triangle, corner = np.nonzero(chosen[triangles])
     centre, neighbour = triangles[triangle, corner], triangles[triangle, (corner + 1) % 3]
     order = np.lexsort((np.angle(vertices[neighbour] - vertices[centre]), centre))
     centre, neighbour = centre[order], neighbour[order]
-    owner = np.full(len(vertices), len(vertices))
-    np.minimum.at(owner, neighbour, centre)
-    np.minimum.at(owner, centre, centre)
+    start = np.diff(centre, prepend=-1).nonzero()[0]
+    near = np.add.reduceat(np.abs(vertices[neighbour] - vertices[centre]), start) if len(start) else np.zeros(0)
+    rank = np.full(len(vertices), len(vertices))
+    rank[centre[start][np.argsort(near, kind="stable")]] = np.arange(len(start))
+    first = np.full(len(vertices), len(vertices))
+    np.minimum.at(first, neighbour, rank[centre])
+    np.minimum.at(first, centre, rank[centre])
     disputed = np.zeros(len(vertices), bool)
-    disputed[centre[(owner[neighbour] != centre) | (owner[centre] != centre)]] = True
+    disputed[centre[(first[neighbour] != rank[centre]) | (first[centre] != rank[centre])]] = True
     alone = ~disputed[centre]
     centre, neighbour = centre[alone], neighbour[alone]
     return centre, neighbour, np.diff(centre, prepend=-1).nonzero()[0]
@@ -138,8 +146,8 @@ def _split(vertices: Points, extra: Floats, centre: Ints, neighbour: Ints, start
     half = count // 2
     opposite = neighbour[start[of] + (place + half[of]) % count[of]]
     around = neighbour[start[of] + place]
-    # The cheapest pair of each centre comes first in this order; then count the places from there.
-    order = np.lexsort((extra[around] + extra[opposite], of))
+    # The cheapest pair of each centre comes first in this order, of equal ones the first; then count the places from there.
+    order = np.lexsort((np.round(extra[around] + extra[opposite], 6), of))
     begin = place[order][np.diff(of, prepend=-1).nonzero()[0]]
     place = (place - begin[of]) % count[of]
     points = []

@@ -58,8 +58,8 @@ REACHED = {  # mean worst angle, mean quality, mean number of triangles
 }  # fmt: skip
 
 MATTERS = [  # constant, factor, family, and which measure falls by how much: worst angle, quality, or 1 / number in %
-    ("MARGINS", 0.5, "sliding", 1, 0.001), ("CROWDED", 2, "sliding", 0, 4), ("SPAN", 2, "drop", 2, 20), ("LONGEST", 2, "uneven", 2, 50),
-    ("ROUND_UP", 2, "uneven", 0, 1), ("SAFE", 2, "sliding", 0, 6), ("TARGET", 0.5, "uneven", 0, 2), ("NEAR_WORST", 0.1, "uneven", 0, 0.5),
+    ("MARGINS", 0.5, "sliding", 1, 0.001), ("CROWDED", 2, "sliding", 0, 4), ("SPAN", 4, "grains", 0, 5), ("LONGEST", 2, "uneven", 2, 50),
+    ("ROUND_UP", 0, "sliding", 0, 6), ("SAFE", 2, "sliding", 0, 6), ("TARGET", 0.5, "uneven", 0, 2), ("NEAR_WORST", 0.1, "uneven", 0, 0.5),
     ("WORST_PASSES", 0.5, "uneven", 0, 0.8), ("WORST_RINGS", 0.34, "square", 0, 0.6), ("CLEAR", 2, "sliding", 1, 0.006),
     ("TOO_MANY", 0.5, "sliding", 0, 2), ("RESERVE", 0, "drop", 0, 1), ("FEW", 0.5, "strip", 0, 1), ("SMOOTH", 0.2, "square", 1, 0.001),
     ("WORST_FIRST", 0.4, "speck", 0, 0.4), ("MARGIN", 0, "grains", 1, 0.0001),

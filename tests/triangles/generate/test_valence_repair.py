@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.spatial import Delaunay
 
 from img2tri.triangles.generate.valence_repair import excess, flip_valences, repair_valences
 
@@ -126,3 +127,26 @@ def test_even_valences_and_flat_triangles_are_left():
     moved = vertices.copy()
     moved[a] += 0.9 * ((moved[b] + moved[c]) / 2 - moved[a])  # all but on the edge that would come
     assert not flip_valences(moved, spoilt, inside)[1]
+
+
+def test_what_is_done_does_not_depend_on_numbers():
+    rng = np.random.default_rng(0)
+    z = rng.random(4000) + 1j * rng.random(4000)
+    triangles = Delaunay(np.stack([z.real, z.imag], axis=1)).simplices.astype(np.int64)
+    free = np.minimum(np.minimum(z.real, z.imag), np.minimum(1 - z.real, 1 - z.imag)) > 0.1
+    order = rng.permutation(len(z))
+    number = np.argsort(order)
+    points, stays = repair_valences(z, triangles, free)
+    again, still = repair_valences(z[order], number[triangles][rng.permutation(len(triangles))], free[order])
+    assert len(points) > 1
+    assert not stays.all()
+    assert np.allclose(np.sort_complex(points), np.sort_complex(again))
+    assert (stays[order] == still).all()
+
+    def flipped(z, triangles, free):
+        found, any_ = flip_valences(z, triangles, free)
+        assert any_
+        return np.sort_complex(z[found].mean(axis=1))
+
+    shuffled = number[triangles][rng.permutation(len(triangles))]
+    assert np.allclose(flipped(z, triangles, free), flipped(z[order], shuffled, free[order]))
