@@ -122,7 +122,7 @@ def to_segment(p: Points, a: Points, b: Points) -> Floats:
     """Distance of points to segments from a to b."""
     along, off = b - a, p - a
     square = np.maximum(along.real**2 + along.imag**2, 1e-300)
-    share = np.clip((off.real * along.real + off.imag * along.imag) / square, 0, 1)
+    share = np.minimum(np.maximum((off.real * along.real + off.imag * along.imag) / square, 0), 1)
     return np.asarray(np.abs(off - share * along))
 
 

@@ -76,8 +76,10 @@ class Simplification:
     @cached_property
     def entries(self) -> Ints:
         """(p,) the first entry of each point of the coarse outlines, in the order these have: that of the dense points."""
-        at = self.kept.nonzero()[0]
-        return at[np.unique(self.chains.indices[at], return_index=True)[1]]
+        at = self.kept.nonzero()[0][::-1]
+        first = np.full(len(self.snapped), -1)
+        first[self.chains.indices[at]] = at
+        return first[first >= 0]
 
     @cached_property
     def snapped_entries(self) -> Bools:
@@ -117,7 +119,9 @@ def space_evenly(
     if posts is not None and posts.any():
         added = posts.nonzero()[0]
         first, last = np.sort(np.concatenate([first, added])), np.sort(np.concatenate([last, added]))
-        rings = rings[chains.chain[first]] & np.isin(first, chains.first) & np.isin(last, chains.last)
+        begins, ends = np.zeros((2, k), bool)
+        begins[chains.first] = ends[chains.last] = True
+        rings = rings[chains.chain[first]] & begins[first] & ends[last]
     begin, length = way[first], way[last] - way[first]
     size = last - first
     least = np.where(rings, np.minimum(RING, size), 1)

@@ -73,10 +73,12 @@ class NormalOffsets:
         before = self.at - 1
         before[np.searchsorted(self.at, self._begin[moves])] = self._end[moves] - 1
         self._dense = s.dense
-        self._points = self._dense[self.at], self._dense[before], self._dense[self.at + 1]
-        self._snapped = s.snapped[point]
-        self._shorter = np.minimum(*(np.abs(s.dense[beside] - s.dense[self.at]) for beside in (self.ahead, self.behind)))
-        self._rest = s.dual_edges.blunt_middle[point] - self._points[0]
+        dense = self._dense[self.at]
+        self._ways = self._dense[self.at + 1] - dense, self._dense[before] - dense
+        self._lengths = [np.maximum(np.abs(way), 1e-12) for way in self._ways]
+        self._shorter = np.minimum(*(np.abs(self._dense[beside] - dense) for beside in (self.ahead, self.behind)))
+        self._snapped = s.snapped[point].nonzero()[0]
+        self._rest = s.dual_edges.blunt_middle[point[self._snapped]] - dense[self._snapped]
 
     def zigzag(self, offset: Points) -> Floats:
         """Return how far (b,) to move to smooth a zigzag from vertex to vertex: against the fourth difference, which arcs have none of."""
@@ -93,18 +95,20 @@ class NormalOffsets:
 
     def shifted(self, offset: Points, step: Floats, tolerance: float) -> Points:
         """Return the offsets of all entries (k,) after steps (b,) to the right, as far as the tolerance allows these."""
-        right, here = self.right(offset), offset[self.at]
-        point, before, after = self._points
-        # From where on the dense outline is a vertex offset? From a place on the way to the next point.
+        right, here, snapped = self.right(offset), offset[self.at], self._snapped
+        # From where on the dense outline is a vertex offset? From a place on the way to the next point; or from where it was snapped to.
         along = (here * right.conj()).imag
-        way = np.where(along > 0, after, before) - point
-        on_outline = way * np.clip(np.abs(along) / np.maximum(np.abs(way), 1e-12), 0, 1)
-        start = np.where(self._snapped, self._rest, on_outline)
+        (after, before), (to_after, to_before) = self._ways, self._lengths
+        start = np.where(along > 0, after, before) * np.minimum(np.abs(along) / np.where(along > 0, to_after, to_before), 1)
+        most = np.minimum(MOST_OFFSET * tolerance, CHORD_SHARE * self._shorter)
+        start[snapped], most[snapped] = self._rest, SNAPPED_SLACK
         off = ((here - start) * right.conj()).real
-        most = np.where(self._snapped, SNAPPED_SLACK, np.minimum(MOST_OFFSET * tolerance, CHORD_SHARE * self._shorter))
+        new = here + (np.minimum(np.maximum(off + step, -most), most) - off) * right
+        if len(snapped):
+            stays = snapped[np.abs(new[snapped]) > np.maximum(np.abs(here[snapped]), MOST_OFFSET * tolerance)]
+            new[stays] = here[stays]
         result = offset.copy()
-        new = here + (np.clip(off + step, -most, most) - off) * right
-        result[self.at] = np.where(self._snapped & (np.abs(new) > np.maximum(np.abs(here), MOST_OFFSET * tolerance)), here, new)
+        result[self.at] = new
         result[self._end] = result[self._begin]
         return result
 

@@ -211,7 +211,7 @@ class _Smoother:
                 if lines is not None:
                     step = damping * moves[lines.at] / total[lines.at]
                     way = ((moved[lines.at] + step - lines.start) * lines.along.conj()).real
-                    moved[lines.at] = lines.start + np.clip(way, -lines.limits, lines.limits) * lines.along
+                    moved[lines.at] = lines.start + np.minimum(np.maximum(way, -lines.limits), lines.limits) * lines.along
         known = min_angle_tangents(vertices, self._triangles) if tangents is None else tangents
         return _shortened(vertices, moved, self._triangles, known, safe)
 
@@ -261,13 +261,12 @@ def _shortened(before: Points, after: Points, triangles: Ints, tangents: Floats,
     for _ in bounded("smoothing", 4 * len(before) + 2):
         if not len(worse):
             break
-        back = np.unique(triangles[worse])
-        back = back[part[back] > 0]
+        changed = np.zeros(len(before), bool)
+        changed[triangles[worse]] = True
+        back = (changed & (part > 0)).nonzero()[0]
         part[back] = np.where(part[back] > 0.2, part[back] / 2, 0)  # a half, a quarter, an eighth, none
         moved[back] = before[back] + part[back] * (after[back] - before[back])
         # Only triangles at these vertices have changed.
-        changed = np.zeros(len(before), bool)
-        changed[back] = True
         doubtful = touching(triangles, changed).nonzero()[0]
         found[doubtful] = min_angle_tangents(moved, triangles[doubtful])
         worse = doubtful[found[doubtful] < least[doubtful]]

@@ -98,8 +98,10 @@ def lay_strip(pslg: Pslg, at_points: Floats, at_middles: Floats, sizes: SizeFunc
     core = lattice.core(deep)
     between = ((codes != 0) & ~core.nodes()).nonzero()[0]
     edges = core.rim()
-    rim, ends = np.unique(edges, return_inverse=True)
-    constraints = pslg.joined(lattice.positions(rim), ends.reshape(-1, 2), right=codes[edges[:, 0]].astype(np.int64))
+    on_rim = np.zeros(len(codes), bool)
+    on_rim[edges] = True
+    rim, number = on_rim.nonzero()[0], np.cumsum(on_rim, dtype=np.int64) - 1
+    constraints = pslg.joined(lattice.positions(rim), number[edges], right=codes[edges[:, 0]].astype(np.int64))
     free = np.concatenate([near[len(pslg.points) :], lattice.positions(between), fine])
     # Nodes of a lattice lie on common circles, over which exact predicates take long: a nudge, and they do not. Its direction follows
     # from where a point lies, so that windows of one image, which have other points far away, triangulate it alike.
