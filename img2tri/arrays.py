@@ -137,11 +137,12 @@ def sorted_sides(triangles: Ints) -> tuple[NDArray[Any], NDArray[Any], NDArray[A
     count, n = triangles.size, int(triangles.max(initial=-1)) + 1
     # Half the memory to go through, where numbers are small enough.
     kind = np.int32 if max(n, count) < 2**31 else np.int64
-    short = triangles.astype(kind)
-    lower, higher = np.empty((2, len(short), 3), kind)
-    for side, (one, other) in enumerate(((0, 1), (1, 2), (2, 0))):
-        np.minimum(short[:, one], short[:, other], out=lower[:, side])
-        np.maximum(short[:, one], short[:, other], out=higher[:, side])
+    lower, higher = np.empty((2, len(triangles), 3), kind)
+    for block in blocks(len(triangles), 1 << 13):
+        start = triangles[block].astype(kind)
+        end = start.take([1, 2, 0], axis=1)
+        np.minimum(start, end, out=lower[block])
+        np.maximum(start, end, out=higher[block])
     # Sides are the entries of a sparse matrix. To store it by rows SciPy counts, and once more to store it by columns: each pass of this
     # radix sort, least significant key first, keeps the order of the one before where keys are equal.
     to_csr, to_csc = sparse_sorts()

@@ -21,9 +21,12 @@ Moments = tuple[Floats, Floats, Floats]
 
 def region_numbers(regions: Ints, labels: Ints) -> tuple[Ints, list[int]]:
     """Region number (m,) of each triangle, 0 where the image has no such label, and these labels."""
-    at = np.minimum(np.searchsorted(labels[1:], regions) + 1, len(labels) - 1)
-    known = labels[at] == regions
-    return np.where(known, at, 0), np.unique(regions[~known]).tolist()
+    # Most triangles are of the region of the one before.
+    first = np.flatnonzero(np.append(True, regions[1:] != regions[:-1])[: len(regions)])
+    some = regions[first]
+    at = np.minimum(np.searchsorted(labels[1:], some) + 1, len(labels) - 1)
+    known = labels[at] == some
+    return np.where(known, at, 0).repeat(np.diff(first, append=len(regions))), np.unique(some[~known]).tolist()
 
 
 def moments(plane: Floats, triangles: Ints, number: Ints, size: int) -> Moments:
