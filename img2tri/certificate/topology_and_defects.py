@@ -114,9 +114,8 @@ def _pinched(regions: Ints, border: EdgeSides) -> int:
 
 def _repeated(z: Points) -> int:
     """Count vertices that lie where another one does."""
-    # Places that are the same have the same sum; few others have.
-    total = z.real + GOLDEN_RATIO * z.imag
-    order = np.sort(total)
+    # Places that are the same have the same sum; few others have. Rows of a lattice are sorted already, which a stable sort is glad of.
+    order = np.sort(z.real + GOLDEN_RATIO * z.imag, kind="stable")
     if (order[1:] != order[:-1]).all():
         return 0
     return len(z) - len(np.unique(z))
