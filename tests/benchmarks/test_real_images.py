@@ -44,6 +44,7 @@ ROWS = {
     "grains(1500, 2000), 8": (lambda: [grains(1500, 2000)], {"edge_length": 8, "labels": True}, 1),
     "noise(256, .5), 8": (lambda: [noise(256, 0.5)], {"edge_length": 8}, 1),
     "2000 discs of 40 px in 3300^2, 8": (lambda: [specks(3300, 2000, 20)], {"edge_length": 8}, 1),
+    "3000 discs of 40 px in 4096^2, 8": (lambda: [specks(4096, 3000, 20)], {"edge_length": 8}, 1),
     "blob(2048), 3": (lambda: [blob(2048)], {"edge_length": 3}, 1),
 }
 
