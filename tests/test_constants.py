@@ -71,7 +71,7 @@ REASONS = {
     "ACROSS EDGES_IN_CELL": "of the overview picture: as fine as a screen shows, and no cell without triangles",
     "SMALLEST_NARROW": "rings of fewer points are left as they are; twice as many are as good on discs of 6 px and on tiny maps",
     "WELL_CONDITIONED": "stiffness up to which solving once leaves no error of rounding that can be seen",
-    "POOR POOR_RINGS SLIDE_AGAIN": "vertices on outlines slide once more only where a mesh has angles below this, and only there",
+    "POOR POOR_RINGS SLIDE_AGAIN SLIDING": "vertices on outlines slide once more only where a mesh has angles below this, and only there",
     "WITHIN": "as SLIDE: points in which segments were divided keep their order, and a third of their distance",
     "TURN_ENOUGH": "half a degree below the least wedge is as good; 0 takes all rounds",
     "SMALL_ENOUGH": "saves a second grid of sizes where the first is nearly as fine as wanted; 1 to 2 serve",

@@ -50,6 +50,7 @@ NEAR_WORST = 4.0  # degrees: angles within this of the worst are optimised with 
 WORST_PASSES = 2  # one after the other, as the worst place may then be another
 WORST_RINGS = 3  # rings of triangles around the worst that may change
 POOR = 36.0  # degrees: for angles below this vertices on outlines slide once more
+SLIDING: Schedule = ((4, 0.5, 4), *WORST_FIRST)  # outlines have farther to go
 POOR_RINGS = 2  # rings of triangles around these that may change
 
 
@@ -136,7 +137,7 @@ def raise_sliding(
         return vertices
     patch, inner = patch_around(poor, triangles, len(vertices), POOR_RINGS)
     smoother = _Smoother(triangles[patch], free & inner)
-    moved = settle(smoother.smoothed(vertices, tangents[patch], WORST_FIRST, lines.among(inner))[0])
+    moved = settle(smoother.smoothed(vertices, tangents[patch], SLIDING, lines.among(inner))[0])
     moved, found = _raised(moved, min_angle_tangents(moved, triangles), triangles, free, target)
     moved, _ = smoother.smoothed(moved, found[patch], safe=target)
     # What is settled may reach farther than the patch.
