@@ -372,11 +372,11 @@ GROUPS = {
 
 REACHED = {
     "disc 6": (0.0755,), "disc 10": (0.0515,), "disc 21": (0.0347,), "disc 60": (0.0255,), "ellipses": (0.111,),
-    "halves": (0.0463, 0.0505), "walls": (0.0655,), "framed": (0.0418,),
+    "halves": (0.0463, 0.0505), "walls": (0.059,), "framed": (0.0418,),
     "polygons": (0.0, 0.23), "squares": (0.0,), "teeth": (18.0,), "gray": (0.0040, 0.055, 0.038), "ramps": (0.138, 0.158),
     "colours": (0.0155,),
     "blob": (85, 0.03), "gear": (118, 0.12), "grains": (172, 0.115), "noise": (650, 0.25, 2.8), "specks": (540, 0.2),
-    "gears": (745,), "ring": (1.1,), "slid": (0.5, 2.3), "sized": (0.03, 0.031, 31.5), "cells": (0.42,), "long": (120, 0.03),
+    "gears": (745,), "ring": (1.1,), "slid": (0.5, 2.3), "sized": (0.03, 0.031, 31.5), "cells": (0.34,), "long": (120, 0.03),
     "tiny": (1460, 2.5, 0.06, 5.0), "oblong": (1140, 4.7, 0.08, 8.2), "wide": (1270, 2.6, 0.04, 20.5), "nearly": (580, 2.4, 0.06, 4.8),
     "checkers": (5.6,), "crystal": (2110, 0.41),
 }  # fmt: skip
@@ -388,7 +388,7 @@ MATTERS = [
     ("SHORTEST_SIDE", 2, "polygons", 0), ("SLOPPY", 0, "polygons", 0), ("SKIPPED", 2, "polygons", 1), ("SAME_CORNER", 2, "squares", 0),
     ("SHORTEST_ALIGNED", 2, "squares", 0), ("HARD", 0.5, "gray", 0), ("SURE", 0.5, "ramps", 0),
     ("SURE_AREA", 0.5, "gray", 0), ("SHARP_EDGE", 2, "gray", 1), ("DIAGONAL", 0, "gray", 0), ("WINDOW", 2, "gear", 1),
-    ("SMALLEST_WIDE", 2, "disc 10", 0), ("SLIGHT", 0, "walls", 0),
+    ("SMALLEST_WIDE", 2, "disc 10", 0), ("SLIGHT", 4, "tiny", 3),
     ("FEWEST", 8, "walls", 0),
     ("MISFIT", 0.5, "blob", 1), ("MOST_OFFSET", 2, "gear", 0), ("RING", 0.5, "ring", 0), ("ROOM_TO_EVEN", 0.5, "gear", 0),
     ("LEAST_ANGLE", 1.42, "grains", 0), ("GAP", 2, "specks", 0), ("LEANS", 0, "gears", 0), ("ENOUGH", 1.053, "gears", 0),
@@ -406,7 +406,8 @@ MATTERS = [
     ("LEAST_STEP", 2, "disc 60", 0), ("ARC_BLUR", 2, "blob", 1),
     ("SHORTEST_NARROW", 2, "tiny", 3),
     ("MOST_SHIFT", 0.5, "checkers", 0), ("BLUNT", 0, "checkers", 0), ("INNER", 0, "wide", 1), ("UNSURE", 0, "wide", 1),
-    ("BASE", 0.5, "disc 60", 0), ("WEDGE", 1.4, "crystal", 0), ("JUNCTIONS_APART", 0, "crystal", 0), ("PLENTY", 100, "crystal", 0),
+    ("BASE", 0.5, "disc 60", 0), ("WEDGE", 1.4, "crystal", 0), ("OFFSETS", 0.25, "walls", 0), ("FARTHEST_LINE", 5, "walls", 0),
+    ("JUNCTIONS_APART", 0, "crystal", 0), ("PLENTY", 100, "crystal", 1),
 ]  # fmt: skip
 
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from shapes.place.test_constrained_smoothing import sliding
 
+from img2tri.shapes.place import straight_chains
 from img2tri.shapes.place.constrained_smoothing import widest_fitting_spline
 from img2tri.shapes.place.straight_chains import straightened
 
@@ -81,3 +83,41 @@ def test_rings_and_short_chains_are_left_alone():
         _, shift, again, ends, ends_again = both(labels)
         np.testing.assert_array_equal(again, shift)
         np.testing.assert_array_equal(ends_again.scale, ends.scale)
+
+
+@pytest.mark.parametrize("slope", [0.0, 0.03, 0.31, 0.618, 0.93])
+def test_the_line_is_the_mean_of_all_that_part_the_same_pixels(slope):
+    """Against lines tried at random, told by their heights at both ends."""
+    x, rng = np.arange(24.0), np.random.default_rng(1)
+    z = x + 1j * np.round(slope * x + 0.2)
+    count, turn = len(z), np.exp(0.4j)
+    middle, line = straight_chains._least_squares(z, np.zeros(count, int), 1)
+    ends = line[0] * np.array([-1, 1]) * (np.abs(((z - middle) / line).real).max() + 1) + middle
+    heights = ends.imag[:, None] + rng.uniform(-0.8, 0.8, (2, 200_000))
+    share = ((x - ends[0].real) / (ends[1] - ends[0]).real)[:, None]
+    parts = (np.abs((1 - share) * heights[0] + share * heights[1] - z.imag[:, None]) < 0.5).all(axis=0)
+    assert parts.sum() > 300
+    true = ends.real + 1j * heights[:, parts].mean(axis=1)
+    # Turned, beside a group that is not chosen.
+    turned = np.concatenate([z * turn, z]), np.concatenate([np.full(count, 1j) * turn, np.full(count, 1j)])
+    which, lines = np.arange(2).repeat(count), np.array([line[0] * turn, line[0]])
+    middles = np.array([middle[0] * turn, middle[0]])
+    found, along = straight_chains._mean_of_possible(*turned, which, middles, lines, np.array([True, False]))
+    off = ((true * turn - found[0]) * along[0].conj()).imag
+    assert np.abs(off).max() < 0.03
+    assert (found[1], along[1]) == (middles[1], lines[1])
+
+
+def test_it_is_nearer_to_the_true_line_than_that_of_least_squares(monkeypatch):
+    def off():
+        found = []
+        for angle in np.linspace(0.05, 3.0, 40):
+            s, _, again, _, _ = both(halves(angle))
+            true = (s.points + again * s.axis - (44.7 + 45.2j)) * np.exp(-1j * angle)
+            found.append(true.imag[(np.abs(true.imag) < 1.5) & (true.real < 5) & (s.axis != 0)])
+        return np.sqrt(np.mean(np.concatenate(found) ** 2))
+
+    mean = off()
+    monkeypatch.setattr(straight_chains, "_mean_of_possible", lambda z, axis, which, middle, line, chosen: (middle, line))
+    assert mean < 0.037
+    assert mean < 0.9 * off()

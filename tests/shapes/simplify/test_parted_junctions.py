@@ -47,14 +47,13 @@ def test_four_regions_that_meet_in_a_point_have_two_junctions_far_enough_apart(t
     (pair,) = joined(s)
     before, after = (abs(np.subtract(*places(part)[list(pair)])) for part in (s, part_junctions(s, spacing=spacing, tolerance=0.5)))
     assert before < JUNCTIONS_APART
-    assert after > before + 0.2
-    assert 0.9 < after < JUNCTIONS_APART + 0.1
+    assert min(JUNCTIONS_APART, before + 2 * MOST_OFFSET * 0.5) - 0.1 < after < JUNCTIONS_APART + 0.1
 
 
 @pytest.mark.parametrize("tolerance", [0.1, 0.5])
 @pytest.mark.parametrize("length", [0.7, 8.0])
 def test_junctions_nearby_go_apart_within_the_tolerance_and_all_else_stays(length, tolerance):
-    s, spacing = spaced(specimens.polycrystal(120, 90, 4), length)
+    s, spacing = spaced(specimens.polycrystal(160, 250, 4), length)
     parted = part_junctions(s, spacing=spacing, tolerance=tolerance)
     moved = np.abs(parted.offset - s.offset)
     near = [pair for pair in joined(s) if abs(np.subtract(*places(s)[list(pair)])) < min(JUNCTIONS_APART, length)]
