@@ -41,7 +41,8 @@ REASONS = {
     "ON_SIDE AT_BOUND NO_STEP SAME_AREA SAME_PLACE ROUNDED JUST_WITHIN ON_AXIS ROUNDING SAME ROW_ROUNDING TANGENT_ROUNDING LEAST_MOVE":
         "rounding",
     # Time or memory; the mesh is the same, up to rounding.
-    "BATCH FEW_REGIONS AT_ONCE PLACES_AT_ONCE CHORDS_AT_ONCE NEARBY FIRST_ASKED MOST_SQUARES FEW_PAIRS FEW_BOXES PAUSE": "cost",
+    "BATCH FEW_REGIONS AT_ONCE PLACES_AT_ONCE CHORDS_AT_ONCE NEARBY FIRST_ASKED MOST_SQUARES FEW_PAIRS FEW_BOXES PAUSE "
+    "LOOK_AFTER": "cost",
     # Rounds of what ends by itself before, or ends in an error that says so, or in the best so far.
     "FINER_MATCHES FILLINGS FAIR_ROUNDS BLUNT_ROUNDS RETURNS LEVELS MOST_ATTEMPTS ROUNDS": "stop",
     # They keep a division or a step from becoming too large where there is nothing to divide by.

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from img2tri.errors import FileError, ParameterError
 from img2tri.many.local_workers import AHEAD, MOST_IN_A_BATCH, WorkerLostError
+from img2tri.tiles.run_tasks import LOOK_AFTER, forgotten
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -33,11 +34,19 @@ class Cluster:
         return call
 
     def result(self, call: Any) -> Any:
-        """Wait for a result."""
+        """Wait for a result, as long as there is something to wait for."""
         from distributed import KilledWorker
 
         try:
-            return call.result()
+            while True:
+                try:
+                    return call.result(timeout=LOOK_AFTER)
+                except TimeoutError:
+                    if call.done():
+                        return call.result()  # or what the function raised, if that was it
+                    if forgotten(self.client, [call.key]):
+                        call.cancel()
+                        raise WorkerLostError from None
         except KilledWorker as lost:
             raise WorkerLostError from lost
         finally:

@@ -1,13 +1,14 @@
 """A function called for each of many tasks, in this process or by the workers of a Dask cluster.
 
 Each task is one entry in the cluster's graph, under a name that its dashboard shows. What all tasks have in common is sent to each worker
-once. A task whose worker is lost is done again by another.
+once. A task whose worker is lost is done again by another. Now and then, mostly under load, a cluster forgets one, and who waits for it
+would wait for ever: so one looks from time to time whether there is something to wait for.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 from uuid import uuid4
 
@@ -15,6 +16,7 @@ from img2tri.errors import FileError, Img2triError
 
 ROUNDS = 6  # how often tasks are sent again that a cluster has forgotten, as what they need was lost with a worker
 PAUSE = 0.5  # seconds, until a cluster has noticed that a worker is lost
+LOOK_AFTER = 20.0  # seconds, until one looks whether a task is still with the cluster
 
 
 def done(
@@ -73,18 +75,37 @@ def _round(
         time.sleep(PAUSE)
         return
     futures = {client.submit(_call, function, kept, task, key=f"{stage}-{name}-{once}", pure=False): name for name, task in tasks.items()}
+    left = set(futures)
     try:
-        for future in as_completed(futures):
-            if future.cancelled():
-                continue
+        while left:
             try:
-                yield futures[future], future.result()
-            except Img2triError:
-                raise
-            except Exception as problem:  # a worker that is lost again and again, or a cluster that closes
-                raise FileError(f"{stage} {futures[future]}: {type(problem).__name__}: {problem}; what is done stays") from problem
+                for future in as_completed(list(left), timeout=LOOK_AFTER):
+                    left.discard(future)
+                    if not future.cancelled():
+                        yield futures[future], _result(future, f"{stage} {futures[future]}")
+            except TimeoutError:
+                if forgotten(client, [future.key for future in left]):
+                    return
     finally:
         client.cancel(list(futures))
+
+
+def forgotten(client: Any, keys: Iterable[Any]) -> bool:
+    """Tell whether none of the calls of these keys is with a worker, while there is one that has nothing to do.
+
+    A call that is taken for forgotten though its turn was to come is made twice, which costs time and changes nothing.
+    """
+    at = [set(calls) for calls in client.processing().values()]
+    return any(not calls for calls in at) and set(keys).isdisjoint(set().union(*at))
+
+
+def _result(future: Any, name: str) -> Any:
+    try:
+        return future.result()
+    except Img2triError:
+        raise
+    except Exception as problem:  # a worker that is lost again and again, or a cluster that closes
+        raise FileError(f"{name}: {type(problem).__name__}: {problem}; what is done stays") from problem
 
 
 def _call(function: Callable[..., Any], shared: tuple[Any, ...], task: Any) -> Any:

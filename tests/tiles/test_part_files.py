@@ -99,7 +99,7 @@ class Answer:
 
 def test_what_a_cluster_forgets_is_asked_for_again(monkeypatch):
     distributed = pytest.importorskip("distributed")
-    monkeypatch.setattr(distributed, "as_completed", iter)
+    monkeypatch.setattr(distributed, "as_completed", lambda futures, timeout: iter(futures))
     client = Forgetful()
     found = dict(run_tasks.done(client, "double", lambda factor, n: factor * n, {"a": 1, "b": 2, "c": 3}, (2,), lambda _: None))
     assert found == {"a": 2, "b": 4, "c": 6}
