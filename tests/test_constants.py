@@ -42,7 +42,7 @@ REASONS = {
         "rounding",
     # Time or memory; the mesh is the same, up to rounding.
     "BATCH FEW_REGIONS AT_ONCE PLACES_AT_ONCE CHORDS_AT_ONCE NEARBY FIRST_ASKED MOST_SQUARES FEW_PAIRS FEW_BOXES PAUSE "
-    "LOOK_AFTER": "cost",
+    "LOOK_AFTER WORKERLESS": "cost",
     # Rounds of what ends by itself before, or ends in an error that says so, or in the best so far.
     "FINER_MATCHES FILLINGS FAIR_ROUNDS BLUNT_ROUNDS RETURNS LEVELS MOST_ATTEMPTS ROUNDS": "stop",
     # They keep a division or a step from becoming too large where there is nothing to divide by.

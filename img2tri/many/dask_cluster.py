@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from img2tri.errors import FileError, ParameterError
 from img2tri.many.local_workers import AHEAD, MOST_IN_A_BATCH, WorkerLostError
-from img2tri.tiles.run_tasks import LOOK_AFTER, forgotten
+from img2tri.tiles.run_tasks import LOOK_AFTER, Watch
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -24,8 +24,9 @@ class Cluster:
     """The workers of a Dask cluster."""
 
     def __init__(self, client: Client) -> None:
-        self.client, self.calls = client, set[Any]()
-        self.window, self.most_in_a_batch = AHEAD * max(1, sum(client.nthreads().values())), MOST_IN_A_BATCH
+        threads = sum(client.nthreads().values())
+        self.client, self.calls, self.watch = client, set[Any](), Watch(client, had_workers=threads > 0)
+        self.window, self.most_in_a_batch = AHEAD * max(1, threads), MOST_IN_A_BATCH
 
     def submit(self, function: Callable[..., Any], *given: Any) -> Any:
         """Have a function called on some worker."""
@@ -44,7 +45,7 @@ class Cluster:
                 except TimeoutError:
                     if call.done():
                         return call.result()  # or what the function raised, if that was it
-                    if forgotten(self.client, [call.key]):
+                    if self.watch.forgotten([call.key]):
                         call.cancel()
                         raise WorkerLostError from None
         except KilledWorker as lost:

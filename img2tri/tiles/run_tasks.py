@@ -7,6 +7,7 @@ would wait for ever: so one looks from time to time whether there is something t
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
@@ -17,6 +18,7 @@ from img2tri.errors import FileError, Img2triError
 ROUNDS = 6  # how often tasks are sent again that a cluster has forgotten, as what they need was lost with a worker
 PAUSE = 0.5  # seconds, until a cluster has noticed that a worker is lost
 LOOK_AFTER = 20.0  # seconds, until one looks whether a task is still with the cluster
+WORKERLESS = 120.0  # seconds without any worker, after which none is waited for
 
 
 def done(
@@ -45,7 +47,7 @@ def done(
     Raises
     ------
     Img2triError
-        What the function raised; FileError if a task was given up by the cluster.
+        What the function raised; FileError if a task was given up by the cluster, or this has no workers left.
     """
     if client is None:
         for k, (name, task) in enumerate(tasks.items()):
@@ -75,7 +77,7 @@ def _round(
         time.sleep(PAUSE)
         return
     futures = {client.submit(_call, function, kept, task, key=f"{stage}-{name}-{once}", pure=False): name for name, task in tasks.items()}
-    left = set(futures)
+    left, watch = set(futures), Watch(client)
     try:
         while left:
             try:
@@ -84,19 +86,36 @@ def _round(
                     if not future.cancelled():
                         yield futures[future], _result(future, f"{stage} {futures[future]}")
             except TimeoutError:
-                if forgotten(client, [future.key for future in left]):
+                if watch.forgotten([future.key for future in left]):
                     return
     finally:
         client.cancel(list(futures))
 
 
-def forgotten(client: Any, keys: Iterable[Any]) -> bool:
-    """Tell whether none of the calls of these keys is with a worker, while there is one that has nothing to do.
+class Watch:
+    """Looks after calls that a cluster may have forgotten, or has nobody left for."""
 
-    A call that is taken for forgotten though its turn was to come is made twice, which costs time and changes nothing.
-    """
-    at = [set(calls) for calls in client.processing().values()]
-    return any(not calls for calls in at) and set(keys).isdisjoint(set().union(*at))
+    def __init__(self, client: Any, *, had_workers: bool = True) -> None:
+        """Look after the calls of a client; a cluster that has had no workers yet is waited for."""
+        self.client, self.had_workers, self.alone_since = client, had_workers, math.inf
+
+    def forgotten(self, keys: Iterable[Any]) -> bool:
+        """Tell whether none of the calls of these keys is with a worker, while there is one that has nothing to do.
+
+        A call that is taken for forgotten though its turn was to come is made twice, which costs time and changes nothing.
+
+        Raises
+        ------
+        FileError
+            If there has been no worker for long, where there were some.
+        """
+        at = [set(calls) for calls in self.client.processing().values()]
+        now = time.monotonic()
+        self.had_workers |= bool(at)
+        self.alone_since = math.inf if at else min(self.alone_since, now)
+        if self.had_workers and now - self.alone_since > WORKERLESS:
+            raise FileError(f"cluster: expected workers, found none for {WORKERLESS:g} seconds; start some, or go on without the cluster")
+        return any(not calls for calls in at) and set(keys).isdisjoint(set().union(*at))
 
 
 def _result(future: Any, name: str) -> Any:

@@ -8,6 +8,7 @@ from functools import partial
 
 import pytest
 
+from img2tri.errors import FileError
 from img2tri.many import dask_cluster
 from img2tri.many.in_order import in_order
 from img2tri.tiles import run_tasks
@@ -49,3 +50,27 @@ def test_a_forgotten_call_is_made_again(monkeypatch):
         calls.clear()
         assert list(in_order(partial(slowly, 2), range(4), dask_cluster.Cluster(client), lost=pytest.fail)) == [0, 2, 4, 6]
         assert len(calls) == 5
+
+
+class Deserted:
+    """A client of a cluster that has lost all its workers."""
+
+    def processing(self):
+        return {}
+
+
+def test_a_cluster_without_workers_is_not_waited_for(monkeypatch):
+    monkeypatch.setattr(run_tasks, "WORKERLESS", 0.05)
+    waiting = run_tasks.Watch(Deserted(), had_workers=False)
+    assert not waiting.forgotten(["a"])
+    watch = run_tasks.Watch(Deserted())
+    assert not watch.forgotten(["a"])
+    time.sleep(0.06)
+    with pytest.raises(FileError, match="expected workers, found none for 0.05 seconds; start some"):
+        watch.forgotten(["a"])
+    assert not waiting.forgotten(["a"])
+    watch.client = type("Back", (), {"processing": lambda self: {"one": ("b",), "other": ()}})()
+    assert watch.forgotten(["a"])
+    assert not watch.forgotten(["a", "b"])
+    watch.client = Deserted()
+    assert not watch.forgotten(["a"])
