@@ -15,6 +15,8 @@ import oracles
 import pytest
 import specimens
 from PIL import Image
+from scipy import ndimage
+from scipy.spatial import KDTree
 
 import img2tri
 from img2tri import FileError, ImageError, Img2triError, ParameterError, mesh_image
@@ -783,3 +785,19 @@ def test_pixels_keep_the_shape_a_file_knows(tmp_path):
     assert dx == pytest.approx(50 / UNEVEN.shape[1])
     assert dy / dx == pytest.approx(2, rel=1e-3)
     assert mesh.report.settings["units"] is None
+
+
+@pytest.mark.parametrize("labels", [False, True])
+def test_an_edit_of_a_corner_changes_triangles_near_it_only(labels):
+    image = ndimage.gaussian_filter(np.random.default_rng(0).standard_normal((400, 400)), 6)
+    image = np.digitize(image, [-0.02, 0.02]) if labels else image > 0
+    edited = image.copy()
+    edited[20:30, 20:30] = image[200, 200] ^ 1
+    middles = []
+    for one in (image, edited):
+        mesh = mesh_image(one, edge_length=4.0, **({"labels": True} if labels else {}))
+        middle = mesh.vertices[mesh.triangles].mean(axis=1)
+        middles.append(middle[np.hypot(middle[:, 0] - 25, middle[:, 1] - 375) > 48 * 4.0])
+    distance = KDTree(middles[1]).query(middles[0])[0]
+    assert len(distance) > 3000
+    assert (distance < 0.4).mean() > 0.99  # .8 where points are put off, and valences repaired, in the order of numbers

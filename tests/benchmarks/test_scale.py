@@ -129,3 +129,42 @@ def test_two_workers_against_one(tmp_path):
             times.append(time.perf_counter() - begun)
     print(f"\n8192^2: {times[0]:.1f} s with one worker, {times[1]:.1f} s with two, x {times[1] / times[0]:.2f}")
     print(f"  peak of this process {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024:.0f} MB")
+
+
+def near_seams(mesh, block, within=8.0):
+    """Smallest angles, sizes (px) of triangles within so many px of borders of blocks, and which far from these and the frame."""
+    p = mesh.vertices[mesh.triangles]
+    side = np.stack([np.linalg.norm(p[:, (k + 1) % 3] - p[:, (k + 2) % 3], axis=1) for k in range(3)], axis=1)
+    a, b, c = np.sort(side, axis=1).T
+    angle = np.degrees(np.arccos(np.clip((b**2 + c**2 - a**2) / (2 * b * c), -1, 1)))
+    middle, n = p.mean(axis=1), mesh.frame.shape[0]
+    inside = ((middle > 64) & (middle < n - 64)).all(axis=1)
+    off = abs(middle - block * np.clip(np.round(middle / block), 1, n // block - 1)).min(axis=1)
+    return angle, np.sqrt(a * b * np.sqrt(1 - ((a**2 + b**2 - c**2) / (2 * a * b)) ** 2) / 2), inside & (off < within), inside & (off > 64)
+
+
+@pytest.mark.parametrize("name", ["blobs", "cells"])
+def test_seams_are_as_elsewhere(name, monkeypatch):
+    from scipy.stats import ks_2samp
+
+    from img2tri import mesh_image
+    from img2tri.tiles import block_plan
+
+    monkeypatch.setattr(block_plan, "BLOCK_SIDE", 256)
+    samples = {"by blocks": [], "in memory": []}
+    for seed in range(4):
+        image = ndimage.gaussian_filter(np.random.default_rng(seed).standard_normal((1024, 1024)), 10) > 0 if name == "blobs" else None
+        given = {} if name == "blobs" else {"labels": True}
+        image = cells(1024, 50, seed) if image is None else image
+        for how, found in samples.items():
+            found.append(near_seams(mesh_image(image, edge_length=8.0, blocks=how == "by blocks", **given), 256))
+    angles, sizes, near, far = (np.concatenate(parts) for parts in zip(*samples["by blocks"], strict=True))
+    same = [np.concatenate([one[k][one[2]] for one in samples["in memory"]]) for k in range(2)]
+    print()
+    for what, values, there in (("angles", angles, same[0]), ("sizes", sizes, same[1])):
+        for where, others in (("elsewhere", values[far]), ("the same places in memory", there)):
+            found, here = ks_2samp(values[near], others), values[near]
+            least = 1.358 * math.sqrt(1 / len(here) + 1 / len(others))
+            print(f"  {name}, {what} at seams and {where}: {len(here):,} and {len(others):,} triangles")
+            print(f"    D {found.statistic:.4f}, p {found.pvalue:.2g}; p is .05 at D {least:.4f}")
+    assert ks_2samp(angles[near], same[0]).statistic < 0.03
