@@ -30,7 +30,9 @@ HELD = {  # by tests of their own
     "SAMPLE": "shapes/place/test_noisy_edges.py", "PURE": "shapes/place/test_noisy_edges.py",
     "TURN_SIDE": "shapes/simplify/test_sharp_turns.py", "SHARP_ANGLE": "shapes/simplify/test_sharp_turns.py",
     "STRAIGHT_SIDE": "shapes/simplify/test_sharp_turns.py", "TURNS_APART": "shapes/simplify/test_sharp_turns.py",
-    "MIXED_CROSSINGS": "shapes/simplify/test_sharp_turns.py",
+    "MIXED_CROSSINGS": "shapes/simplify/test_sharp_turns.py", "TIP": "shapes/simplify/test_sharp_turns.py",
+    "TIP_OFFSET": "shapes/simplify/test_sharp_turns.py",
+    "MOST_BLUNT": "shapes/simplify/test_sharp_turns.py",
     "BLOCK_SIDE": "tiles/test_mesh_tiles.py", "PADDING": "shapes/place/test_smoothing_splines.py",
     "CHORD_SHARE": "shapes/simplify/test_vertex_offsets.py",
 }  # fmt: skip
@@ -46,7 +48,7 @@ REASONS = {
     # Rounds of what ends by itself before, or ends in an error that says so, or in the best so far.
     "FINER_MATCHES FILLINGS FAIR_ROUNDS BLUNT_ROUNDS RETURNS LEVELS MOST_ATTEMPTS ROUNDS": "stop",
     # They keep a division or a step from becoming too large where there is nothing to divide by.
-    "STEEP LEAST_WIDTH SLANT SOLVABLE FLATTEST NUDGE BY_CHANCE LEAST_PIECE": "guard",
+    "STEEP LEAST_ACROSS LEAST_WIDTH SLANT SOLVABLE FLATTEST NUDGE BY_CHANCE LEAST_PIECE": "guard",
     # Mathematics, or a number of someone else's.
     "RATIO ROW TURN DEFECT GOLDEN_RATIO NODE SUPER TRIANGLE STEPS _ROOT _POSITIVE _UNIT _FROM_ONE": "given",
     # Defaults and limits that users are told; another value is another promise.

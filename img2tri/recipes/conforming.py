@@ -122,9 +122,11 @@ def conform(
     pairs = find_periodic_pairs(outlines, dual_edges, periodic)
     posted = np.zeros(len(outlines.chains.indices), bool) if posts is None else posts(outlines)
     # Outlines of stretched pixels got theirs with the turning points; opposite sides have to have their vertices alike.
+    tips = None
     if not stretched and not len(pairs.one):
-        posted = posted | sharp_turns(outlines)
-    coarse = _spaced(outlines, dual_edges, pairs, sizes, tolerance, corners == "keep", keep_area, posted, WEDGE)
+        turns, tips = sharp_turns(outlines, tolerance=tolerance)
+        posted = posted | turns
+    coarse = _spaced(outlines, dual_edges, pairs, sizes, tolerance, corners == "keep", keep_area, posted, tips, WEDGE)
     if keep_area:
         coarse = with_areas_preserved(coarse, pairs, tolerance=tolerance)
     demands = _Demands(tolerance, min_angle, keep_area, interior, seed, node)
@@ -243,6 +245,7 @@ def _spaced(
     keep_corners: bool,
     keep_area: bool,
     posts: Bools | None = None,
+    tips: Points | None = None,
     least_angle: float = LEAST_ANGLE,
 ) -> Simplification:
     """Simplify the outlines to the lengths wanted, spaced evenly.
@@ -254,7 +257,7 @@ def _spaced(
     wanted = pairs.shared(limit_growth(_wanted(z, dual_edges, sizes), z, outlines.chains, sizes.gradation))
 
     def spaced(known: Simplification | None) -> Simplification:
-        new = space_evenly(outlines, dual_edges, spacing=wanted, keep_corners=keep_corners, posts=posts, least_angle=least_angle)
+        new = space_evenly(outlines, dual_edges, spacing=wanted, keep_corners=keep_corners, posts=posts, tips=tips, least_angle=least_angle)
         new = part_junctions(new, spacing=wanted, tolerance=tolerance)
         new = offset_vertices(new, tolerance=tolerance, keep_area=keep_area)
         return pairs.enforce_tolerance(new, tolerance=tolerance, passed=None if len(pairs.one) else known)

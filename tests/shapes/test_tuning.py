@@ -395,7 +395,7 @@ MATTERS = [
     ("SLIDE", 0.5, "slid", 1), ("STRAIGHT", 0.5, "slid", 1), ("EMPTY", 2, "sized", 0), ("OPPOSITE", 2, "sized", 0),
     ("EVERY", 2, "sized", 0), ("BESIDE", 0.5, "sized", 1), ("PASSES", 0.5, "sized", 2),
     # Where regions meet, chords are few or pixels many: tiny maps, small grains, discs in few chords.
-    ("SHORTEST_CHORD", 0.5, "noise", 2), ("SNAPPED_SLACK", 0, "tiny", 2), ("FADE", 0, "specks", 1), ("FREE_ENDS", 0.5, "tiny", 3),
+    ("SHORTEST_CHORD", 0.5, "oblong", 1), ("SNAPPED_SLACK", 0, "tiny", 2), ("FADE", 0, "specks", 1), ("FREE_ENDS", 0.5, "tiny", 3),
     ("SHORTEST_WIDE", 0.5, "tiny", 3), ("NODE_WEIGHT", 2, "gear", 1), ("LACKING_AREA", 0.1, "wide", 0), ("GREAT", 2, "long", 1),
     ("SAME_CROSSINGS", 0, "polygons", 0), ("SMALL_REGION", 2, "tiny", 2), ("SHRINKINGS", 0, "sized", 0), ("ON_LINE", 0, "squares", 0),
     ("AMID", 8, "cells", 0), ("LEAST_WEDGE", 0.5, "tiny", 3), ("SHORTEST_PART", 2, "specks", 1), ("LONG", 0.9, "nearly", 0),
@@ -405,7 +405,7 @@ MATTERS = [
     ("STRANGE", 2, "colours", 0), ("LASTING", 0.5, "gears", 0), ("FOR_ALL", 0, "wide", 0),
     ("LEAST_STEP", 2, "disc 60", 0), ("ARC_BLUR", 2, "blob", 1),
     ("SHORTEST_NARROW", 2, "tiny", 3),
-    ("MOST_SHIFT", 0.5, "checkers", 0), ("BLUNT", 0, "checkers", 0), ("INNER", 0, "wide", 1), ("UNSURE", 0, "wide", 1),
+    ("MOST_SHIFT", 0.5, "checkers", 0), ("BLUNT", 0, "checkers", 0), ("INNER", 0.5, "oblong", 1), ("UNSURE", 0, "wide", 1),
     ("BASE", 0.5, "disc 60", 0), ("WEDGE", 1.4, "crystal", 0), ("OFFSETS", 0.25, "walls", 0), ("FARTHEST_LINE", 5, "walls", 0),
     ("JUNCTIONS_APART", 0, "crystal", 0), ("PLENTY", 100, "crystal", 1),
 ]  # fmt: skip

@@ -35,6 +35,7 @@ from img2tri.types import ColourMix, Frame, Outlines
 Places = Callable[[Points], Bools]
 """Function of places (n,) that tells which are of a kind."""
 PLENTY = 30  # points of the long outlines of a region: so many spare short ones
+LEAST_ACROSS = 1e-9  # px^2, of a dual edge that meets a line
 MIXED_CROSSINGS = 2  # crossings to either side of a corner whose pixels may be mixed of more than two sides
 
 
@@ -89,7 +90,7 @@ def place_outlines(
     if len(at):
         node = len(dual_edges.crossed) + np.searchsorted(dual_edges.node_corner, at)
         points[node], movable[node] = sharp, False
-        slack = _unsure_beside(node, dual_edges, slack)
+        shift, slack = _on_sides_of_corners(node, points, dual_edges, shift, slack)
     bounded = _with_free_ends(_bounded(dual_edges, points, shift, slack), dual_edges)
     shift, ends = straightened(bounded, *widest_fitting_spline(bounded))
     # From here on the nodes on the frame stay where they slid to, and all others where their chains lead.
@@ -160,15 +161,27 @@ def _bounded(dual_edges: DualEdges, points: Points, shift: Floats, slack: Floats
     return BoundedChains(points + shift * dual_edges.vector, dual_edges.vector, low, high, slack, dual_edges.chains)
 
 
-def _unsure_beside(corners: Ints, dual_edges: DualEdges, slack: Floats) -> Floats:
-    """Return the slack (n,) of crossings: gray values of pixels beside a corner are of both its sides, and tell where neither is."""
-    indices = dual_edges.chains.indices
-    at = np.flatnonzero(np.isin(indices, corners))[:, None] + np.arange(-MIXED_CROSSINGS, MIXED_CROSSINGS + 1)
-    beside = np.clip(at, 0, len(indices) - 1)
-    beside = indices[beside[dual_edges.chains.chain[beside] == dual_edges.chains.chain[at[:, [MIXED_CROSSINGS]]]]]
-    slack = slack.copy()
-    slack[beside] = BOUND
-    return slack
+def _on_sides_of_corners(corners: Ints, points: Points, dual_edges: DualEdges, shift: Floats, slack: Floats) -> tuple[Floats, Floats]:
+    """Return shifts and slack (n,) of crossings where those beside corners begin on the sides of the corner, as unsure as in a mask.
+
+    Gray values of pixels beside a corner are mixed of both its sides, and tell where neither is. A side passes through the corner and the
+    first crossing that is sure; corners are ends of chains.
+    """
+    indices, chain, vector = dual_edges.chains.indices, dual_edges.chains.chain, dual_edges.vector
+    is_corner, new_shift, new_slack = np.zeros(len(points), bool), shift.copy(), slack.copy()
+    is_corner[corners] = True
+    for ends, step in ((dual_edges.chains.first, 1), (dual_edges.chains.last, -1)):
+        at = ends[is_corner[indices[ends]]]
+        beside = np.clip(at[:, None] + step * np.arange(1, MIXED_CROSSINGS + 2), 0, len(indices) - 1)
+        own = chain[beside] == chain[at, None]
+        corner, unsure, sure = points[indices[at], None], indices[beside[:, :-1]], indices[beside[:, -1:]]
+        side = dual_edges.middle[sure] + shift[sure] * vector[sure] - corner
+        across = cross(vector[unsure], side)
+        known = own[:, -1:] & (np.abs(across) > LEAST_ACROSS) & (slack[unsure] < BOUND)
+        t = -cross(dual_edges.middle[unsure] - corner, side) / np.where(known, across, 1)
+        new_shift[unsure[known]] = np.clip(t[known], -BOUND, BOUND)
+        new_slack[unsure[own[:, :-1]]] = BOUND
+    return new_shift, new_slack
 
 
 def _with_free_ends(s: BoundedChains, dual_edges: DualEdges) -> BoundedChains:

@@ -101,11 +101,13 @@ def space_evenly(
     spacing: float | Floats,
     keep_corners: bool = False,
     posts: Bools | None = None,
+    tips: Points | None = None,
     least_angle: float = LEAST_ANGLE,
 ) -> Simplification:
     """Keep vertices along each chain, `spacing` px apart: one length, or one at each entry (k,).
 
-    With `keep_corners` no corner of an outline is ever blunted. Entries (k,) that are `posts` are vertices, from which spacing begins anew.
+    With `keep_corners` no corner of an outline is ever blunted. Entries (k,) that are `posts` are vertices, from which spacing begins anew,
+    and lie so far off as `tips` (k,) says.
     """
     chains, starts = outlines.chains, outlines.chains.starts
     z = as_complex(outlines.points)[chains.indices]
@@ -134,7 +136,7 @@ def space_evenly(
     at = after - (wanted - way[after - 1] < way[after] - wanted)
     share = (wanted - way[after - 1]) / np.maximum(way[after] - way[after - 1], 1e-12)
     place = z[after - 1] + share * (z[after] - z[after - 1])
-    kept, offset = np.zeros(k, bool), np.zeros(k, np.complex128)
+    kept, offset = np.zeros(k, bool), np.zeros(k, np.complex128) if tips is None else tips.copy()
     inner = (number > 0) & (at > first[which]) & (at < last[which])
     offset[at[inner]] = (place - z[at])[inner]
     kept[at[inner]] = True

@@ -19,17 +19,18 @@ from img2tri.arrays import Floats, Ints, Points, as_rows, cross
 from img2tri.shapes.simplify.simplification import Simplification
 
 MOST_OFFSET = 0.8  # of the tolerance: how far along the normal a vertex may be offset
-CHORD_SHARE = 1 / 3  # of the shorter chord beside it: no vertex is offset farther; small rings would shrink to a point and be snapped
 SNAPPED_SLACK = 0.12  # px: how far along the normal a snapped vertex may be offset
 FAIRINGS = 6  # how often a zigzag is smoothed
 FAIR = 0.5  # of `MOST_OFFSET`: how far a vertex may go for that
+CHORD_SHARE = 0.3  # of the shorter chord beside it, times `MOST_OFFSET`: the same; else small rings would shrink to a point
 
 
 def offset_vertices(s: Simplification, *, tolerance: float, keep_area: bool = True) -> Simplification:
     """Smooth zigzags of vertices; to keep areas, let each vertex take up half of the areas between the chords beside it and their arcs."""
     free, offset = NormalOffsets(s), s.offset
+    most = np.minimum(FAIR * tolerance, CHORD_SHARE * free.shorter)
     for _ in range(FAIRINGS):
-        offset = free.shifted(offset, free.zigzag(offset), FAIR * tolerance)
+        offset = free.shifted(offset, free.zigzag(offset), most)
     s = replace(s, offset=offset)
     if keep_area:
         area, width = areas_beside(s)
@@ -48,6 +49,8 @@ class NormalOffsets:
         (b,) int64, their entries.
     behind, ahead
         (b,) int64, the vertices before and after them; rings go round.
+    shorter
+        (b,) float64, the distance from the dense point to that of the nearer of the two.
     """
 
     def __init__(self, s: Simplification, *, snapped: bool = False) -> None:
@@ -76,7 +79,7 @@ class NormalOffsets:
         dense = self._dense[self.at]
         self._ways = self._dense[self.at + 1] - dense, self._dense[before] - dense
         self._lengths = [np.maximum(np.abs(way), 1e-12) for way in self._ways]
-        self._shorter = np.minimum(*(np.abs(self._dense[beside] - dense) for beside in (self.ahead, self.behind)))
+        self.shorter = np.minimum(*(np.abs(self._dense[beside] - dense) for beside in (self.ahead, self.behind)))
         self._snapped = s.snapped[point].nonzero()[0]
         self._rest = s.dual_edges.blunt_middle[point[self._snapped]] - dense[self._snapped]
 
@@ -93,19 +96,20 @@ class NormalOffsets:
         as_rows(right)[:] *= (1 / np.maximum(np.abs(right), 1e-12))[:, None]
         return right
 
-    def shifted(self, offset: Points, step: Floats, tolerance: float) -> Points:
+    def shifted(self, offset: Points, step: Floats, tolerance: float | Floats) -> Points:
         """Return the offsets of all entries (k,) after steps (b,) to the right, as far as the tolerance allows these."""
         right, here, snapped = self.right(offset), offset[self.at], self._snapped
         # From where on the dense outline is a vertex offset? From a place on the way to the next point; or from where it was snapped to.
         along = (here * right.conj()).imag
         (after, before), (to_after, to_before) = self._ways, self._lengths
         start = np.where(along > 0, after, before) * np.minimum(np.abs(along) / np.where(along > 0, to_after, to_before), 1)
-        most = np.minimum(MOST_OFFSET * tolerance, CHORD_SHARE * self._shorter)
+        limit = np.full(len(here), MOST_OFFSET * tolerance)
+        most = limit.copy()
         start[snapped], most[snapped] = self._rest, SNAPPED_SLACK
         off = ((here - start) * right.conj()).real
         new = here + (np.minimum(np.maximum(off + step, -most), most) - off) * right
         if len(snapped):
-            stays = snapped[np.abs(new[snapped]) > np.maximum(np.abs(here[snapped]), MOST_OFFSET * tolerance)]
+            stays = snapped[np.abs(new[snapped]) > np.maximum(np.abs(here[snapped]), limit[snapped])]
             new[stays] = here[stays]
         result = offset.copy()
         result[self.at] = new
