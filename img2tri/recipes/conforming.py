@@ -19,7 +19,7 @@ from img2tri.recipes.preserved_areas import with_areas_preserved
 from img2tri.recipes.wanted_sizes import Sizes
 from img2tri.shapes.periodic.paired_outlines import FILLINGS, PeriodicPairs, find_periodic_pairs
 from img2tri.shapes.periodic.side_chains import cut_alike
-from img2tri.shapes.place.placement import Places, place_on_pixel_sides, place_outlines
+from img2tri.shapes.place.placement import place_on_pixel_sides, place_outlines
 from img2tri.shapes.simplify.parted_junctions import part_junctions
 from img2tri.shapes.simplify.set_back import set_back_near
 from img2tri.shapes.simplify.sharp_turns import sharp_turns
@@ -54,14 +54,7 @@ SPLITTINGS, SPLITTINGS_NOT_SQUARE = 6, 3  # of these: rounds in which they are s
 
 
 def trace_outlines(
-    zones: Segmentation,
-    frame: Frame,
-    *,
-    connectivity: int = 4,
-    corners: str = "auto",
-    outline: str = "smooth",
-    periodic: str | None = None,
-    shared: Places | None = None,
+    zones: Segmentation, frame: Frame, *, connectivity: int = 4, corners: str = "auto", outline: str = "smooth", periodic: str | None = None
 ) -> tuple[Outlines, DualEdges]:
     """Trace the outlines of all regions of a label map, as fine as the pixels.
 
@@ -79,8 +72,6 @@ def trace_outlines(
         "smooth", or "pixel": exactly along the sides of pixels.
     periodic
         "x", "y" or "xy": the points on these opposite sides are put at the same places; see `img2tri.shapes.periodic`.
-    shared
-        Of a window that is to fit others, see `place_outlines`.
     """
     crack_edges = find_crack_edges(
         zones.labels, background=zones.background, upward=frame.upward, connectivity=connectivity, changes=zones.changes
@@ -88,7 +79,7 @@ def trace_outlines(
     crack_edges = cut_alike(crack_edges, periodic)
     if outline == "pixel":
         return place_on_pixel_sides(crack_edges, frame)
-    outlines, dual_edges = place_outlines(crack_edges, frame, gray=zones.gray, level=zones.level, corners=corners != "round", shared=shared)
+    outlines, dual_edges = place_outlines(crack_edges, frame, gray=zones.gray, level=zones.level, corners=corners != "round")
     return find_periodic_pairs(outlines, dual_edges, periodic).alike(outlines), dual_edges
 
 

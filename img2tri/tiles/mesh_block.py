@@ -8,7 +8,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from img2tri.arrays import Bools, Floats, Ints, Points, as_complex, as_rows
+from img2tri.arrays import Bools, Ints, Points, as_complex, as_rows
 from img2tri.errors import Img2triError, MeshError
 from img2tri.options.all_options import MeshOptions, of
 from img2tri.options.mesh_options import FillOptions, OutlineOptions, SizeOptions
@@ -158,11 +158,7 @@ def window_mesh(zones: Segmentation, plan: Plan, rows: slice, columns: slice) ->
     if zones.background is not None and not (zones.labels != zones.background).any():
         return Piece.empty(), DenseOutlines(np.zeros(0, np.complex128), np.zeros((0, 2), np.int64))
     frame = Frame(zones.labels.shape, whole.spacing, (0.0, 0.0), whole.upward)
-    # The origin of the plane is where row 0 begins, or where the last row ends.
-    shift = complex(*whole.plane(rows.stop if whole.upward else rows.start, columns.start))
-    several = plan.grid != (1, 1)
-    shared = partial(_near_borders, plan, rows, columns, shift) if several else None
-    outlines, dual_edges = trace_outlines(zones, frame, connectivity=o["connectivity"], shared=shared, **of(OutlineOptions, o))
+    outlines, dual_edges = trace_outlines(zones, frame, connectivity=o["connectivity"], **of(OutlineOptions, o))
     lengths = of(SizeOptions, o)
     if isinstance(lengths["edge_length"], np.ndarray):
         lengths["edge_length"] = lengths["edge_length"][rows, columns]
@@ -170,6 +166,9 @@ def window_mesh(zones: Segmentation, plan: Plan, rows: slice, columns: slice) ->
     if sizes.field is not None:
         sizes = replace(sizes, longest=max(sizes.longest, plan.margin / MARGIN_EDGES))  # one lattice for all windows
     within = frame.length("tolerance", o["tolerance"]) / frame.pixel
+    # The origin of the plane is where row 0 begins, or where the last row ends.
+    shift = complex(*whole.plane(rows.stop if whole.upward else rows.start, columns.start))
+    several = plan.grid != (1, 1)
     made = conform(
         outlines, dual_edges, sizes, corners=o["corners"], tolerance=within,
         node=-shift if several else None, posts=partial(_posts, plan, rows, columns, shift) if several else None, **of(FillOptions, o),
@@ -180,28 +179,14 @@ def window_mesh(zones: Segmentation, plan: Plan, rows: slice, columns: slice) ->
     return piece, DenseOutlines(as_complex(outlines.points) + shift, outlines.segments[0])
 
 
-def _borders(plan: Plan, rows: slice, columns: slice, shift: complex) -> tuple[Floats, Floats]:
-    """Find the borders of blocks that a window sees: x of upright ones and y of level ones, in its own plane."""
-    found = []
+def _posts(plan: Plan, rows: slice, columns: slice, shift: complex, outlines: Outlines) -> Bools:
+    """Find posts on both sides of the borders of blocks that a window sees."""
+    away = POSTED * plan.margin
+    lines = []
     for part, (seen, pixels) in enumerate(((columns, plan.frame.shape[1]), (rows, plan.frame.shape[0]))):
         borders = np.arange(plan.block, pixels, plan.block)
         borders = borders[(borders > seen.start) & (borders < seen.stop)]
         places = plan.frame.plane(borders, np.zeros(len(borders))) if part else plan.frame.plane(np.zeros(len(borders)), borders)
-        found.append(places[:, 1] - shift.imag if part else places[:, 0] - shift.real)
-    return found[0], found[1]
-
-
-def _near_borders(plan: Plan, rows: slice, columns: slice, shift: complex, places: Points) -> Bools:
-    """Tell which places are as near to borders as posts are."""
-    near = np.zeros(len(places), bool)
-    for borders, along in zip(_borders(plan, rows, columns, shift), (places.real, places.imag), strict=True):
-        for border in borders:
-            near |= np.abs(along - border) <= POSTED * plan.margin
-    return near
-
-
-def _posts(plan: Plan, rows: slice, columns: slice, shift: complex, outlines: Outlines) -> Bools:
-    """Find posts on both sides of the borders of blocks that a window sees."""
-    away = POSTED * plan.margin
-    x, y = (np.concatenate([at - away, at + away]).tolist() for at in _borders(plan, rows, columns, shift))
-    return find_posts(outlines, shift, (x, y), 2 * away)
+        at = places[:, 1] - shift.imag if part else places[:, 0] - shift.real
+        lines.append(np.concatenate([at - away, at + away]).tolist())
+    return find_posts(outlines, shift, (lines[0], lines[1]), 2 * away)

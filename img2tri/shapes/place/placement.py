@@ -7,14 +7,13 @@ where there are any (`iso_crossings`), exactly at corners (`outline_corners`), a
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from img2tri.arrays import Bools, Floats, Ints, Points, as_complex, as_rows, cross
+from img2tri.arrays import Bools, Floats, Ints, Points, as_complex, cross
 from img2tri.shapes.place.area_exchange import exchange_areas
 from img2tri.shapes.place.constrained_smoothing import (
     SHORTEST_NARROW,
@@ -32,21 +31,13 @@ from img2tri.shapes.trace.crack_edges import CrackEdges, cut_chains
 from img2tri.shapes.trace.dual_edges import BOUND, DualEdges, lay_out, pixel_areas
 from img2tri.types import ColourMix, Frame, Outlines
 
-Places = Callable[[Points], Bools]
-"""Function of places (n,) that tells which are of a kind."""
 PLENTY = 30  # points of the long outlines of a region: so many spare short ones
 LEAST_ACROSS = 1e-9  # px^2, of a dual edge that meets a line
 MIXED_CROSSINGS = 2  # crossings to either side of a corner whose pixels may be mixed of more than two sides
 
 
 def place_outlines(
-    crack_edges: CrackEdges,
-    frame: Frame,
-    *,
-    gray: NDArray[Any] | ColourMix | None = None,
-    level: OutlineLevel = None,
-    corners: bool = True,
-    shared: Places | None = None,
+    crack_edges: CrackEdges, frame: Frame, *, gray: NDArray[Any] | ColourMix | None = None, level: OutlineLevel = None, corners: bool = True
 ) -> tuple[Outlines, DualEdges]:
     """Return the dense outlines, in the plane of `frame`, and the dual edges their points lie on.
 
@@ -61,18 +52,12 @@ def place_outlines(
         there is.
     corners
         True: corners stay sharp; False: they are rounded as all else is.
-    shared
-        Of a window that is to fit others: which places in the plane all of these see well. Outlines there that lead elsewhere are not
-        shifted for the area of the whole chain, which windows do not see alike.
     """
     if frame.spacing[0] != frame.spacing[1]:
         # Steps of pixels are alike in both directions only where pixels are square: there outlines are smoothed, and stretched then.
-        size = np.array(frame.spacing) / frame.pixel
-        there = None if shared is None else lambda z: shared(as_complex(as_rows(z) * size))
-        square = Frame(frame.shape, upward=frame.upward)
-        placed, squares = place_outlines(crack_edges, square, gray=gray, level=level, corners=corners, shared=there)
+        placed, squares = place_outlines(crack_edges, Frame(frame.shape, upward=frame.upward), gray=gray, level=level, corners=corners)
         stretched = lay_out(squares.crack_edges, frame)
-        points = as_complex(placed.points * size)
+        points = as_complex(placed.points * (np.array(frame.spacing) / frame.pixel))
         return stretched.outlines(_opened_stretched(points, stretched)), stretched
     dual_edges = lay_out(crack_edges, frame)
     if not len(dual_edges.crossed):
@@ -98,8 +83,7 @@ def place_outlines(
     bounded = replace(bounded, points=np.where(dual_edges.slides, bounded.points, nodes), axis=dual_edges.vector)
     shift = bend_to_nodes(bounded, np.where(dual_edges.slides, shift, 0.0), ends, dual_edges.bounds != 0)
     wanted = _wanted_areas(bounded, dual_edges, slack)
-    restored = restore_swept_areas(bounded, shift, np.where(_spared(bounded, *dual_edges.regions), np.nan, wanted))
-    shift = restored if shared is None else np.where(_passing(dual_edges, shared), shift, restored)
+    shift = restore_swept_areas(bounded, shift, np.where(_spared(bounded, *dual_edges.regions), np.nan, wanted))
     areas, free = pixel_areas(dual_edges), bounded
     if dual_edges.is_junction.any():
         bounded, shift = open_wedges(bounded, shift, dual_edges.blunt_middle, dual_edges.is_junction, dual_edges.bounds)
@@ -136,15 +120,6 @@ def _opened_stretched(points: Points, dual_edges: DualEdges) -> Points:
     for free in (opened, replace(s, points=opened.points)):
         shift = exchange_areas(free, shift, wanted, *dual_edges.regions, pixel_areas(dual_edges))
     return opened.points + shift * vector
-
-
-def _passing(dual_edges: DualEdges, shared: Places) -> Bools:
-    """Tell the points (n,) at shared places whose chains lead to others."""
-    chains, here = dual_edges.chains, shared(dual_edges.middle)
-    leads_on = ~np.logical_and.reduceat(here[chains.indices], chains.first)
-    result = np.zeros(len(here), bool)
-    result[chains.indices[leads_on[chains.chain]]] = True
-    return result & here
 
 
 def _corners(dual_edges: DualEdges, shift: Floats, slack: Floats) -> tuple[Ints, Ints, Points]:
