@@ -15,7 +15,7 @@ from img2tri.shapes.simplify.simplification import Simplification
 AREA_ERROR = 1e-4  # relative, of a region: above it vertices are offset for its sake, at first
 FOR_ALL = 1  # rounds for all regions
 STILL_OFF = 0.0003  # relative, of a region: above it this is done again
-MOST_AREA_ROUNDS = 12  # of all; the best is taken
+MOST_AREA_ROUNDS = 24  # of all; the best is taken
 
 
 def with_areas_preserved(coarse: Simplification, pairs: PeriodicPairs, *, tolerance: float) -> Simplification:

@@ -19,37 +19,45 @@ from img2tri.shapes.trace.dual_edges import pixel_areas
 
 LACKING_AREA = 0.003  # of the area of a region: what it may lack before it gets more vertices
 EXCHANGE_ROUNDS = 3  # of leaving out vertices that cannot move the way they should
+LEFT_OVER = 1e-6  # relative, of a region: above it all its vertices are offset, not only those that slid
 LEAST_ROOM = 1e-3  # px, vertices that can move no farther are left out
 SMALL_REGION = 16  # pixels: the area of smaller regions is not looked after
 
 
-def preserve_areas(s: Simplification, *, tolerance: float, among: Bools | None = None, above: float = 0.0) -> Simplification:
+def preserve_areas(s: Simplification, *, tolerance: float, above: float = 0.0) -> Simplification:
     """Offset vertices along the normal so that the chords enclose what the outlines enclose, region by region.
 
     Each vertex takes up half of the chord-arc areas beside it; what then is missing of a region, since some vertices cannot move, is
     shared evenly by the others, see `region_pressures`. No vertex ends farther from the outline than the tolerance. Where that leaves a
     region with too much or too little, it gets more vertices, see `closer_spacing`.
 
-    With `above`, the relative error that is borne, only that is shared what is missing. With `among`, entries (k,), only these are offset
-    to share it, and no vertices are added: what lies well for its arcs stays so.
+    With `above`, the relative error that is borne, only that is shared what is missing.
     """
-    free = NormalOffsets(s, snapped=among is None)
+    free = NormalOffsets(s, snapped=True)
     area, width = (part[free.at] for part in areas_beside(s))
-    taken = s if among is not None or above else replace(s, offset=free.shifted(s.offset, area / width, tolerance))
-    step = _exchange(taken, free, width if among is None else width * among[free.at], tolerance)
-    if among is not None:
-        step *= among[free.at]
-    result = replace(s, offset=free.shifted(taken.offset, step, tolerance))
-    if among is not None:
-        return result
+    taken = s if above else replace(s, offset=free.shifted(s.offset, area / width, tolerance))
+    result = _exchanged(taken, free, width, tolerance)
     areas = pixel_areas(s.dual_edges)
     areas[0] = np.inf
     off = (np.abs(_gained_areas(result)) > (above or LACKING_AREA) * areas) & (areas > (SMALL_REGION if above else 0))
     return spaced_closer(result, off, tolerance=tolerance) if off.any() else result
 
 
-def _exchange(s: Simplification, free: NormalOffsets, width: Floats, tolerance: float) -> Floats:
-    """Return steps (b,) to the right of the free vertices by which all regions get the areas they lack, see `region_pressures`.
+def share_areas(s: Simplification, among: Bools, *, tolerance: float) -> Simplification:
+    """Offset vertices among some entries (k,) so that regions have their areas again; the others stay, as they lie well for their arcs."""
+    free = NormalOffsets(s, snapped=False)
+    _, width = areas_beside(s)
+    return _exchanged(s, free, (width * among)[free.at], tolerance)
+
+
+def of_regions_off(s: Simplification) -> Bools:
+    """Tell which entries (k,) are on the outline of a region that has too much or too little."""
+    off = area_errors(s) > LEFT_OVER
+    return np.asarray((off[s.outlines.left] | off[s.outlines.right])[s.chains.chain])
+
+
+def _exchanged(s: Simplification, free: NormalOffsets, width: Floats, tolerance: float) -> Simplification:
+    """Offset the free vertices (b,) that have a width so that all regions get the areas they lack, see `region_pressures`.
 
     Vertices that cannot move the way they should are left out of account, as far as these change.
     """
@@ -66,7 +74,7 @@ def _exchange(s: Simplification, free: NormalOffsets, width: Floats, tolerance: 
         known = able
         pressure = region_pressures(left, right, width * able / 2, lacking)
         step = pressure[left] - pressure[right]
-    return np.asarray(np.clip(step, back, forth))
+    return replace(s, offset=free.shifted(s.offset, np.clip(step, back, forth) * (width > 0), tolerance))
 
 
 def area_errors(s: Simplification) -> Floats:

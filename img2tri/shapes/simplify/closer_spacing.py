@@ -62,12 +62,8 @@ def _closer(s: Simplification, run: Ints, free: Bools, off: Bools, tolerance: fl
     # Of n chords that cut off an area A, f of which begin at a fixed vertex, m cut off A (n / m)^2, and the m - f vertices between them can
     # give back so much of their share of the length; the two are equal for this m.
     wanted = fixed / 2 + np.sqrt(fixed**2 / 4 + count**2 * cut / (length * MOST_OFFSET * tolerance))
-    # A region may be off for the sake of its neighbour.
     left, right = s.outlines.left[s.chains.chain[first]], s.outlines.right[s.chains.chain[first]]
-    beside = off.copy()
-    beside[left[off[right]]] = beside[right[off[left]]] = True
-    beside[0] = False
-    near = np.bincount(run, beside[left] | beside[right]) > 0
+    near = np.bincount(run, off[left] | off[right]) > 0
     # Where that does not do, one more where it helps most.
     helps, greatest = ((wanted - fixed) / count * (np.bincount(run, last - first) > count))[run], np.zeros(len(off))
     for side in (left, right):

@@ -13,8 +13,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from img2tri.arrays import Floats, Ints, Points, as_complex
-from img2tri.shapes.simplify.area_preservation import preserve_areas
+from img2tri.arrays import Bools, Floats, Ints, Points, as_complex
+from img2tri.shapes.simplify.area_preservation import of_regions_off, share_areas
 from img2tri.shapes.simplify.clearance import to_segment
 from img2tri.shapes.simplify.simplification import SAME_PLACE, Simplification
 from img2tri.shapes.simplify.tolerance import SHORTEST_CHORD, enforce_tolerance
@@ -57,11 +57,11 @@ def relocate(s: Simplification, points: Floats, *, tolerance: float, keep_area: 
         if keep_area:
             slid = np.zeros(len(s.kept), bool)
             slid[new[goes]] = True
-            tried = preserve_areas(tried, tolerance=tolerance, among=slid)
+            tried = share_areas(tried, slid, tolerance=tolerance)
         found = enforce_tolerance(tried, tolerance=tolerance, passed=s)
-        failed = (found.kept != tried.kept) | (found.snapped_entries != tried.snapped_entries)
+        failed = _mended(tried, found)
         if not failed.any():
-            return found
+            return _with_areas_shared(found, tolerance) if keep_area else found
         # Of a chord in which something had to be done both ends go half as far, and then none.
         first, last = tried.chords
         count = np.concatenate([[0], np.cumsum(failed)])
@@ -70,6 +70,21 @@ def relocate(s: Simplification, points: Floats, *, tolerance: float, keep_area: 
         ends[first[back]] = ends[last[back]] = True
         way = np.where(goes & ~ends[new], way, 0.5 * way * (attempt == 0))
     return s
+
+
+def _mended(tried: Simplification, found: Simplification) -> Bools:
+    """Tell for which entries (k,) something had to be done to keep the tolerance."""
+    return np.asarray((found.kept != tried.kept) | (found.snapped_entries != tried.snapped_entries))
+
+
+def _with_areas_shared(s: Simplification, tolerance: float) -> Simplification:
+    """Offset all vertices of regions whose areas those that slid could not keep, if the tolerance allows it without more ado."""
+    off = of_regions_off(s)
+    if not off.any():
+        return s
+    tried = share_areas(s, off, tolerance=tolerance)
+    found = enforce_tolerance(tried, tolerance=tolerance, passed=s)
+    return s if _mended(tried, found).any() else found
 
 
 def _nearest(s: Simplification, old: Ints, places: Points) -> Ints:

@@ -44,13 +44,13 @@ def test_only_runs_near_the_regions_that_are_off_change():
     assert not ((new.kept != s.kept) | (new.offset != s.offset))[beyond].any()
 
 
-def test_what_a_region_lacks_for_the_sake_of_its_neighbour_comes_from_the_neighbour():
-    """The outer circle cannot hold its area; ring and disc share what is lacking, and the circle between them has vertices enough."""
+@pytest.mark.parametrize(("edge_length", "most"), [(15.7, 160), (31.4, 100), (80.0, 100)])
+def test_discs_in_discs_have_their_areas_with_few_triangles(edge_length, most):
+    """What the outer circle cannot hold is shared by ring and disc."""
     labels = specimens.disc(80, 35.1) + specimens.disc(80, 20.4, (40.3, 39.6))
-    s = drafted(labels, 15.7)
-    new = spaced_closer(s, np.array([False, False, True]), tolerance=0.5)
-    outer = ((s.outlines.left == 0) | (s.outlines.right == 0))[s.chains.chain]
-    assert new.kept[outer].sum() > s.kept[outer].sum()
+    mesh = img2tri.mesh_image(labels, labels=True, edge_length=edge_length)
+    assert len(mesh.triangles) <= most
+    assert max(abs(area["error"]) for area in mesh.report.areas.values()) <= 2e-5
 
 
 @pytest.mark.parametrize("radius", [5.0, 8.3, 9.6, 10.4, 14.1, 17.7])
