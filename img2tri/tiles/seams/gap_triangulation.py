@@ -66,12 +66,15 @@ class Gap:
         (k,) int64, points in it that may move or go.
     inside
         Function of places that tells which count: the gap is open at its ends.
+    met
+        Function of places that tells which are so near that triangles between them may be taken.
     """
 
     z: Points
     walls: GapWalls
     loose: Ints
     inside: Callable[[Points], Bools]
+    met: Callable[[Points], Bools]
 
 
 def gap_filled(gap: Gap) -> tuple[Points, Ints, Ints]:
@@ -117,12 +120,12 @@ def _triangulated(z: Points, loose: Ints, gap: Gap) -> tuple[Ints, Ints]:
     triangles = table["vertices"].astype(np.int64) - SUPER
     triangles = triangles[(triangles >= 0).all(axis=1)]
     triangles = triangles[gap.inside(places[triangles].mean(axis=1))]
-    codes = _codes(places, triangles, segments, gap.walls)
+    codes = _codes(places, triangles, segments, gap.walls, np.any(gap.met(places)[segments], axis=1))
     return used[triangles[codes > 0]], codes[codes > 0]
 
 
-def _codes(places: Points, triangles: Ints, segments: Ints, walls: GapWalls) -> Ints:
-    """Regions of triangles, flooded from the walls around them."""
+def _codes(places: Points, triangles: Ints, segments: Ints, walls: GapWalls, met: Bools) -> Ints:
+    """Regions of triangles, flooded from the walls around them; from walls that are met (s,) alone, where there are some."""
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import connected_components
 
@@ -141,7 +144,10 @@ def _codes(places: Points, triangles: Ints, segments: Ints, walls: GapWalls) -> 
     upward = segments[:, 0] < segments[:, 1]
     left, right = np.where(upward, sides.left[at], sides.right[at]), np.where(upward, sides.right[at], sides.left[at])
     voters, votes = np.concatenate([left[there], right[there]]), np.concatenate([walls.left[there], walls.right[there]])
-    votes, voters = votes[voters >= 0], voters[voters >= 0]
+    near, inside = np.tile(met[there], 2), voters >= 0
+    # Walls are missing at the open ends, where faces flow together: there, walls may contradict those that are met.
+    told = np.isin(face[voters], face[voters[near & inside]])
+    votes, voters = votes[inside & (near | ~told)], voters[inside & (near | ~told)]
     size = int(votes.max(initial=0)) + 1
     ballots, count = np.unique(face[voters] * size + votes, return_counts=True)
     order = np.argsort(count, kind="stable")

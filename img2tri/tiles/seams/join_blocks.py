@@ -235,4 +235,7 @@ def _gap(
     every = GapWalls.together(walls)
     z = np.concatenate([z, added])
     near = np.asarray((np.concatenate([both.outside, territory.outside(added)])[every.segments] < WALLED * margin).all(axis=1))
-    return Gap(z, every.chosen(near), loose, lambda places: territory.outside(places) < FILLED * margin)
+    return Gap(
+        z, every.chosen(near), loose,
+        inside=lambda places: territory.outside(places) < FILLED * margin, met=lambda places: territory.outside(places) < MET * margin,
+    )  # fmt: skip
