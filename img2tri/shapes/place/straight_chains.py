@@ -87,19 +87,38 @@ def _mean_of_possible(z: Points, axis: Points, which: Ints, middle: Points, line
     if not len(z):
         return middle, line
     begin = np.flatnonzero(np.diff(which, prepend=-1))
-    group, size = which[begin], np.diff(begin, append=len(which))
+    group = which[begin]
     ahead = line[which].conj()
     off, half = (z - middle[which]) * ahead, axis * ahead / 2
     half *= np.sign(half.imag)
     reach = np.maximum.reduceat(np.abs(off.real), begin) + 1
+    # From one end and from the other, so that it does not matter which of them comes first.
+    (one, other, there), (back, forth, too) = (_amid(off * way, half, reach, begin) for way in (1, -1))
+    some = there | too
+    count = np.maximum(there * 1.0 + too, 1)
+    one, other = ((one * there - forth * too) / count)[some], ((other * there - back * too) / count)[some]
+    at, reach = group[some], reach[some]
+    middle, line = middle.copy(), line.copy()
+    middle[at] += line[at] * 0.5j * (one + other)
+    turned = 2 * reach + 1j * (other - one)
+    line[at] *= turned / np.abs(turned)
+    return middle, line
+
+
+def _amid(off: Points, half: Points, reach: Floats, begin: Ints) -> tuple[Floats, Floats, Bools]:
+    """Return the mean offsets (g,) of possible lines at -reach and at reach, and whether there are any.
+
+    Of the crossings (n,), by groups that begin at some of them, there are their places along and across a line, and halves of their dual
+    edges, upwards. The offsets that are tried are those at -reach.
+    """
+    place = np.repeat(np.arange(len(begin)), np.diff(begin, append=len(off)))
     # The bound of a second offset for a first one f is y / share - f (1 - share) / share, for each end of a dual edge.
-    place = np.repeat(np.arange(len(group)), size)
     sides = []
     for side, extreme in ((off - half, np.maximum), (off + half, np.minimum)):
         share = (side.real / reach[place] + 1) / 2
         sides.append((side.imag / share, 1 / share - 1, extreme))
     steps = np.linspace(-1, 1, OFFSETS)[:, None]
-    centre, width = np.zeros(len(group)), np.full(len(group), FARTHEST_LINE)
+    centre, width = np.zeros(len(begin)), np.full(len(begin), FARTHEST_LINE)
     for _ in range(2):  # where there is room at all; then there alone
         first = centre + steps * width
         bounds = [[extreme.reduceat(y - each[place] * slope, begin) for y, slope, extreme in sides] for each in first]
@@ -107,15 +126,8 @@ def _mean_of_possible(z: Points, axis: Points, which: Ints, middle: Points, line
         centre, width = _range(first, high - low)
     room = np.maximum(high - low, 0)
     total = room.sum(axis=0)
-    there = total > 0
-    weight = room[:, there] / total[there]
-    one, other = (weight * first[:, there]).sum(axis=0), (weight * (low + high)[:, there] / 2).sum(axis=0)
-    at, reach = group[there], reach[there]
-    middle, line = middle.copy(), line.copy()
-    middle[at] += line[at] * 0.5j * (one + other)
-    turned = 2 * reach + 1j * (other - one)
-    line[at] *= turned / np.abs(turned)
-    return middle, line
+    weight = room / np.where(total > 0, total, 1)
+    return (weight * first).sum(axis=0), (weight * (low + high) / 2).sum(axis=0), total > 0
 
 
 def _range(first: Floats, room: Floats) -> tuple[Floats, Floats]:

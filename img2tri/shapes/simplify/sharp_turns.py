@@ -72,7 +72,8 @@ def sharp_turns(outlines: Outlines, *, tolerance: float) -> tuple[Bools, Points]
         ways[own] = np.where(new[own], meet[line.own], ways[own])
         found |= new
     found &= ~_crowded(found, np.concatenate([chains.first, chains.last]))
-    return found, np.where(found, ways * np.minimum(1, TIP_OFFSET * tolerance / np.maximum(np.abs(ways), 1e-12)), 0)
+    length = np.abs(ways)
+    return found, np.where(found, ways * (np.minimum(length, TIP_OFFSET * tolerance) / np.maximum(length, 1e-12)), 0)
 
 
 def _turns(z: Points, real: Bools, tip: int, straight: float) -> tuple[Ints, Points]:
