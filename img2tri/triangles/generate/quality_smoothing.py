@@ -165,7 +165,9 @@ def _parts(triangles: Ints, joining: Bools) -> Ints:
         lowest = np.full(len(joining), len(triangles))
         np.minimum.at(lowest, triangles, part[:, None])
         lowest[~joining] = len(triangles)
-        lower = np.minimum(part, lowest[triangles].min(axis=1))
+        found = np.minimum(part, lowest[triangles].min(axis=1))
+        lower = found.copy()
+        np.minimum.at(lower, part, found)  # the first triangle learns what any of its part has found, and tells the others
         lower = lower[lower]
         if np.array_equal(lower, part):
             break
