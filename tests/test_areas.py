@@ -38,12 +38,11 @@ def test_small_grains(n, grains, seed):
     assert np.median(errors) <= 0.0002
 
 
-@pytest.mark.parametrize("left_over", [1e-6, 1])
+@pytest.mark.parametrize("left_over", [2e-5, 1])
 def test_areas_of_cells_that_are_hardly_larger_than_edges(monkeypatch, left_over):
     monkeypatch.setattr(area_preservation, "LEFT_OVER", left_over)  # at 1 only vertices that slid share what is missing
     errors = np.concatenate([np.abs(area_errors(specimens.polycrystal(96, 140, seed), labels=True, edge_length=8)) for seed in (1, 2)])
-    assert (np.quantile(errors, 0.9) <= 1.5e-6) == (left_over < 1)
-    assert errors.max() <= 0.0003
+    assert (errors.max() <= 1e-4) == (left_over < 1)
 
 
 @pytest.mark.parametrize("edge_length", [1, 5, 16])

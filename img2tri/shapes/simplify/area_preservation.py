@@ -19,7 +19,7 @@ from img2tri.shapes.trace.dual_edges import pixel_areas
 
 LACKING_AREA = 0.003  # of the area of a region: what it may lack before it gets more vertices
 EXCHANGE_ROUNDS = 3  # of leaving out vertices that cannot move the way they should
-LEFT_OVER = 1e-6  # relative, of a region: above it all its vertices are offset, not only those that slid
+LEFT_OVER = 2e-5  # relative, of a region: above it all its vertices are offset, not only those that slid
 LEAST_ROOM = 1e-3  # px, vertices that can move no farther are left out
 SMALL_REGION = 16  # pixels: the area of smaller regions is not looked after
 
