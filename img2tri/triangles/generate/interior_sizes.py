@@ -100,7 +100,7 @@ class _Sources:
         across, up = (points.real[:, None] - self._places.real), (points.imag[:, None] - self._places.imag)
         with np.errstate(over="ignore"):  # what is too far to be squared is out of reach, as it is for a search tree
             square = across * across + up * up
-        nearest = square.argmin(axis=1)
-        distance = np.sqrt(square[np.arange(len(points)), nearest])
-        near = distance < reach
-        return np.where(near, distance, np.inf), np.where(near, nearest, count)
+        place = square.argmin(axis=1)
+        far = np.sqrt(square[np.arange(len(points)), place])
+        near = far < reach
+        return np.where(near, far, np.inf), np.where(near, place, count)
